@@ -25,11 +25,11 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "premio", version, after_help = EXIT_STATUS)]
 pub struct Arguments {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
-    /// Write JSON: measures, checks and summaries, and on standard error what there is to say
-    /// (premio.message/1, one a line)
+    /// Write JSON: measures, checks and summaries, and messages on standard error
+    /// (premio.message/1, one per line)
     #[arg(long, global = true, display_order = 900)]
     pub json: bool,
     /// The most that is read.
@@ -45,7 +45,7 @@ is beyond a stated limit, or a close call under --strict.";
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Measures of the solid: volume, area, topology, how it was decided
+    /// Measures of the solid: volume, area, topology, decisions
     #[command(after_help = "Example: premio info part.padl --json")]
     Info(InfoOptions),
     /// What a camera sees: contours with their visibility
@@ -54,10 +54,10 @@ pub enum Command {
           premio contours part.padl --camera view.json --format json --samples 5
           premio contours part.padl --views front,top,right,iso --hidden -o part.dxf")]
     Contours(ContoursOptions),
-    /// Every self-check there is, on one description
+    /// All self-checks on one description
     #[command(after_help = "Example: premio check part.padl")]
     Check(CheckOptions),
-    /// The boundary, written in a format of choice
+    /// The boundary in a chosen format
     #[command(after_help = "Examples: premio export part.padl -o part.step
           premio export part.padl --format json")]
     Export(ExportOptions),
@@ -65,41 +65,41 @@ pub enum Command {
     #[command(after_help = "Examples: premio convert part.padl part.json
           premio convert model.asc --part all.g model.padl --exact")]
     Convert(ConvertOptions),
-    /// Which features of the part a sensor and a detector will find, under given lights
+    /// The features of the part that a sensor and a detector find, under given lights
     #[command(
         after_help = "Examples: premio predict part.padl --setup setup.toml -o prediction.json
           premio predict part.padl --setup setup.toml --overlay part.svg -o prediction.json"
     )]
     Predict(PredictOptions),
-    /// What predictions over many setups come to: the detectability of every feature
+    /// The model of predictions over many setups: the detectability of every feature
     #[command(
         after_help = "Examples: premio model part.padl --setups setups.toml -o part.model
           premio model part.padl --setups setups.toml --shard 2/5 -o part.2.shard
           premio model merge part.*.shard -o part.model"
     )]
     Model(ModelOptions),
-    /// Where camera and light are best, and what other places cost
+    /// The best directions of camera and light, and the cost of others
     #[command(after_help = "Example: premio advise part.padl --setups setups.toml --goal pose")]
     Advise(AdviseOptions),
     /// The image of a setup, by a line of sight through every pixel
     #[command(after_help = "Example: premio render part.padl --setup setup.toml -o part.png")]
     Render(RenderOptions),
-    /// What is predicted, held against what is found in an image of the same setup
+    /// The prediction compared with the detection in an image of the same setup
     #[command(after_help = "Examples: premio compare part.padl --setup setup.toml
           premio compare part.padl --setup setup.toml --image photo.png --json")]
     Compare(CompareOptions),
-    /// Where the part is in a picture: pose, correspondences, how likely
+    /// The part in a picture: pose, correspondences, probability
     #[command(
         after_help = "Examples: premio match part.model photo.png --camera camera.json -o pose.json --overlay pose.png
           premio match part.model scene/*.png --camera camera.json --csv poses.csv -o poses.jsonl"
     )]
     Match(MatchOptions),
-    /// Where the part is in the pictures of a sequence, each from the pose before
+    /// The part in the pictures of a sequence, each from the previous pose
     #[command(
         after_help = "Example: premio track part.model film/*.png --camera camera.json -o poses.jsonl"
     )]
     Track(TrackOptions),
-    /// Random trees by the thousand, each put to the self-checks
+    /// The self-checks on thousands of random trees
     #[command(
         after_help = "Examples: premio fuzz --profile grid,near --count 10000 --state run.json --shrink
           premio fuzz --count 100 --write models --write-format padl,csg --json -o summary.json
@@ -107,7 +107,7 @@ pub enum Command {
 Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
     )]
     Fuzz(FuzzOptions),
-    /// The JSON schema of what a command writes
+    /// The JSON schema of a command's output
     #[command(after_help = "Example: premio schema prediction -o prediction.schema.json")]
     Schema(SchemaOptions),
     /// The manual page of the program, or of one of its commands
@@ -120,23 +120,24 @@ Exit status: 0 no answer is wrong; 1 some are; 130 interrupted."
     Completions(CompletionsOptions),
 }
 
-/// What is described, and how it is read and evaluated.
+/// The description, and how it is read and evaluated.
 #[derive(Debug, Default, Args)]
 pub struct DescriptionOptions {
-    /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database as
-    /// text) or .pov (POV-Ray's scene)
+    /// The description: .padl, .csg (OpenSCAD's flattened output), .json, .asc (BRL-CAD's database
+    /// as text) or .pov (POV-Ray's scene)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// What lies nearer than this coincides, in the part's unit [default: 1e-11 of its size]
+    /// Points nearer than this coincide, in the part's unit [default: 1e-11 of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub resolution: Option<f64>,
     /// Refuse the part where a decision was closer than a hundred to one
     #[arg(long)]
     pub strict: bool,
-    /// Let coincide only what is proven to, some hundred times slower
+    /// Accept only proven coincidences, some hundred times slower
     #[arg(long, conflicts_with = "resolution")]
     pub exact: bool,
-    /// Decide nothing in f64: the same boundary from numbers of 237 bits, some hundred times slower
+    /// Make no decision in f64: the same boundary in extended precision (237 bits), some hundred
+    /// times slower
     #[arg(long)]
     pub unfiltered: bool,
     #[command(flatten)]
@@ -151,11 +152,11 @@ impl DescriptionOptions {
     }
 }
 
-/// How a description is read.
+/// The options for reading a description.
 #[derive(Debug, Default, Args)]
 pub struct ReadingOptions {
     /// The part of a .padl, .asc or .pov file to take [default: the last solid assigned, the object
-    /// that no other holds, the whole scene]
+    /// that no other contains, the whole scene]
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
     /// Read a .csg primitive with a small $fn as the smooth one
@@ -164,7 +165,7 @@ pub struct ReadingOptions {
 }
 
 impl ReadingOptions {
-    /// What the readers are told.
+    /// The options of the readers.
     pub fn options(&self) -> ReadOptions {
         ReadOptions {
             smooth: self.smooth,
@@ -173,7 +174,7 @@ impl ReadingOptions {
     }
 }
 
-/// Where text is written.
+/// The output of text.
 #[derive(Debug, Args)]
 pub struct OutputOptions {
     /// Where to write [default: standard output]
@@ -207,13 +208,13 @@ pub struct ContoursOptions {
     /// What to write [default: by the ending of OUT]
     #[arg(long, value_enum)]
     pub format: Option<ContoursFormat>,
-    /// Put N points of the 3-D curve into each piece (json)
+    /// Add N points of the curve in space to each piece (json)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples: Option<u32>,
-    /// Draw what is hidden, too (svg, dxf)
+    /// Draw hidden lines, too (svg, dxf)
     #[arg(long)]
     pub hidden: bool,
-    /// Draw boundaries along which the normal does not jump, too (svg, dxf)
+    /// Draw smooth edges, along which the normal does not jump, too (svg, dxf)
     #[arg(long)]
     pub smooth_edges: bool,
     #[command(flatten)]
@@ -225,7 +226,7 @@ pub struct ContoursOptions {
 pub struct CheckOptions {
     #[command(flatten)]
     pub description: DescriptionOptions,
-    /// How many rays measure the volume
+    /// The number of rays that measure the volume
     #[arg(long, value_name = "N", default_value_t = 200_000)]
     pub rays: u32,
 }
@@ -238,25 +239,25 @@ pub struct ExportOptions {
     /// What to write [default: by the ending of OUT]
     #[arg(long, value_enum)]
     pub format: Option<ExportFormat>,
-    /// How far splines may be from the curves they follow, in the part's unit (step) [default: 1e-6
+    /// The greatest distance of splines from their curves, in the part's unit (step) [default: 1e-6
     /// of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub accuracy: Option<f64>,
     /// The application protocol to name (step) [default: ap242]
     #[arg(long, value_enum, value_name = "AP")]
     pub protocol: Option<StepProtocol>,
-    /// How far triangles may be from the boundary, in the part's unit (stl, obj, glb, 3mf) [default:
-    /// 1/2000 of its size]
+    /// The greatest distance of triangles from the boundary, in the part's unit (stl, obj, glb,
+    /// 3mf) [default: 1/2000 of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub deviation: Option<f64>,
-    /// How far normals may turn along a side of a triangle, in degrees (stl, obj, glb, 3mf)
-    /// [default: 15]
+    /// The greatest angle of the normals along a side of a triangle, in degrees (stl, obj, glb,
+    /// 3mf) [default: 15]
     #[arg(long, value_name = "DEGREES", value_parser = positive)]
     pub angle: Option<f64>,
-    /// What the part's unit is (step, glb, 3mf) [default: mm]
+    /// The part's unit (step, glb, 3mf) [default: mm]
     #[arg(long, value_enum, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// What the part is called (step, obj, glb, 3mf) [default: the file's name]
+    /// The part's name (step, obj, glb, 3mf) [default: the file's name]
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
     #[command(flatten)]
@@ -308,7 +309,7 @@ pub struct ConvertOptions {
     /// Where to write it: .padl, .csg or .json
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
-    /// Refuse what the other language cannot hold exactly, in place of writing the nearest
+    /// Refuse numbers that the other language cannot hold exactly, instead of writing the nearest
     #[arg(long)]
     pub exact: bool,
     #[command(flatten)]
@@ -318,7 +319,7 @@ pub struct ConvertOptions {
 /// Options of `man`.
 #[derive(Debug, Args)]
 pub struct ManOptions {
-    /// The command that the page is of [default: the program]
+    /// The command to describe [default: the program]
     #[arg(value_name = "COMMAND")]
     pub command: Option<String>,
     #[command(flatten)]
@@ -390,10 +391,10 @@ impl ExportFormat {
 }
 
 impl OutputOptions {
-    /// The format that is requested, or else that of the output's ending.
+    /// The requested format, or otherwise that of the output's ending.
     ///
     /// # Errors
-    /// There is none, and the ending says none.
+    /// There is no option, and the ending names no format.
     pub fn format<T: ValueEnum>(&self, requested: Option<T>) -> Result<T, String> {
         if let Some(format) = requested {
             return Ok(format);
@@ -410,15 +411,15 @@ impl OutputOptions {
         let all = T::value_variants().iter().filter_map(T::to_possible_value);
         let all: Vec<String> = all.map(|value| value.get_name().to_owned()).collect();
         let found = match (&self.output, ending) {
-            (None, _) => "there is no `--format`, and no `-o` whose ending says it".to_owned(),
+            (None, _) => "there is no `--format`, and no `-o` with an ending".to_owned(),
             (Some(path), None) => {
                 format!(
-                    "{}: there is no `--format`, and no ending that says it",
+                    "{}: there is no `--format`, and the file has no ending",
                     path.display()
                 )
             }
             (Some(path), Some(ending)) => format!(
-                "{}: there is no `--format`, and the ending `.{ending}` says none",
+                "{}: there is no `--format`, and the ending `.{ending}` names no format",
                 path.display()
             ),
         };
@@ -433,7 +434,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length of time that a clock can wait for.
+/// A duration in seconds.
 fn seconds(text: &str) -> Result<f64, String> {
     positive(text).and_then(|value| match value < 1e6 {
         true => Ok(value),

@@ -1,4 +1,4 @@
-//! The files of a command: what it reads and what it writes, known before anything is computed.
+//! The inputs and outputs of a command, checked before anything is computed.
 
 use crate::arguments::{Command, DescriptionOptions, ModelCommand, SoughtOptions};
 use crate::diagnostics::CliError;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// The option with a folder of many outputs.
 const MODELS: &str = "--write";
 
-/// What a command reads and writes.
+/// The inputs and outputs of a command.
 #[derive(Debug, Default)]
 pub struct Files {
     inputs: Vec<Named>,
@@ -18,23 +18,23 @@ pub struct Files {
     folder: Option<PathBuf>,
 }
 
-/// A file, and what the command line calls it.
+/// A file, and its name on the command line.
 #[derive(Debug)]
 struct Named {
     option: &'static str,
     path: PathBuf,
 }
 
-/// What two paths have in common if they are one file.
+/// The identity of a file: equal for two paths to one file.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// A file that is there.
+    /// An existing file.
     Present(FileId),
-    /// A file to be, by the real path of its folder.
+    /// A file that does not exist yet, by the real path of its folder.
     Absent(PathBuf),
 }
 
-/// Device and inode, where the system has them; else the real path.
+/// Device and inode, where the system has them; otherwise the real path.
 #[cfg(unix)]
 type FileId = (u64, u64);
 #[cfg(not(unix))]
@@ -99,7 +99,7 @@ impl Files {
             Command::Track(options) => files.sought(&options.sought),
             Command::Fuzz(options) => {
                 files.writes("--state", options.state.as_deref());
-                // A folder that is yet to be made holds no file that could be lost.
+                // A folder that does not exist yet contains no file that could be lost.
                 let folder = options.write.as_ref().filter(|folder| folder.is_dir());
                 let manifest = folder.map(|folder| folder.join(MANIFEST));
                 files.writes(MODELS, manifest.as_deref());
@@ -137,7 +137,7 @@ impl Files {
         self.outputs.extend(Named::new(option, path));
     }
 
-    /// Whether no other output is among those of a folder.
+    /// Checks that no other output is in the folder of outputs.
     fn check_folder(&self) -> Result<(), CliError> {
         let Some(folder) = &self.folder else {
             return Ok(());
@@ -159,7 +159,7 @@ impl Files {
         Ok(())
     }
 
-    /// Whether every output is a file of its own, in a folder that is there.
+    /// Checks that every output is a separate file in an existing folder.
     ///
     /// # Errors
     /// Two outputs are one file, an output is an input, or an output cannot be a file.
@@ -218,7 +218,7 @@ impl Named {
         CliError::input(format!("{}: {why}", self.path.display()))
     }
 
-    /// What the file that is written is known by; none for devices and pipes, which lose nothing.
+    /// The identity of an output file; none for devices and pipes, whose content is not replaced.
     fn identity_of_output(&self) -> Result<Option<Identity>, CliError> {
         if is_folder(&self.path) {
             return Err(self.refused("found the path of a folder, expected that of a file"));
@@ -235,7 +235,7 @@ impl Named {
     }
 }
 
-/// Whether a path can be that of a folder only, though there is none.
+/// Whether a path that does not exist can only be that of a folder.
 fn is_folder(path: &Path) -> bool {
     let text = path.to_string_lossy();
     let last = text.rsplit(std::path::is_separator).next();
@@ -260,7 +260,7 @@ fn present(path: &Path, _: &Metadata) -> Option<FileId> {
     fs::canonicalize(path).ok()
 }
 
-/// The path of a file to be, its folder without links.
+/// The path of a file that does not exist yet, with its folder resolved.
 fn absent(path: &Path) -> std::io::Result<PathBuf> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = fs::canonicalize(folder.unwrap_or(Path::new(".")))?;

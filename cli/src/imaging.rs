@@ -1,4 +1,4 @@
-//! Pictures in files: the limits and the messages of the program.
+//! Picture files, with the limits and the messages of the program.
 
 use crate::diagnostics::CliError;
 use crate::session::Session;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// The grey image of a file: PNG, PGM or JPEG; a picture in colours by its luma.
 ///
 /// # Errors
-/// The file is no picture, or not all of one, or it has more pixels than the limit, or none.
+/// The file is not a complete picture, or it has more pixels than the limit, or none.
 pub fn read(path: &Path, session: Session) -> Result<Grey, CliError> {
     let bytes = session.limits.read(path)?;
     decode_picture(&bytes, session.limits.pixels).map_err(|error| match error {
@@ -26,13 +26,13 @@ fn failed(path: &Path, error: &PictureError) -> CliError {
     CliError::input(format!("{}: {error}", path.display()))
 }
 
-/// The bytes of a grey image of so many levels: PNG, or PGM, by the file's ending.
+/// The bytes of a grey image with a number of levels: PNG or PGM, by the file's ending.
 pub fn bytes(image: &Grey, levels: u32, path: &Path) -> Result<Vec<u8>, CliError> {
     let bytes = premio::encode_picture(image, levels, format(path)?);
     bytes.map_err(|error| failed(path, &error))
 }
 
-/// The format that the ending of a picture to be says.
+/// The format that the ending of an output picture names.
 ///
 /// # Errors
 /// The ending is another.
@@ -44,7 +44,7 @@ pub fn format(path: &Path) -> Result<PictureFormat, CliError> {
     })
 }
 
-/// The format that the ending of an overlay says; none for SVG.
+/// The format that the ending of an overlay names; none for SVG.
 ///
 /// # Errors
 /// The ending is another.

@@ -1,4 +1,4 @@
-//! Reading files and evaluating what they describe.
+//! Reading descriptions and evaluating them.
 
 use crate::arguments::DescriptionOptions;
 use crate::diagnostics::{CliError, Reporter};
@@ -16,19 +16,19 @@ use std::time::Instant;
 /// A part: the text that it was read from and its boundary.
 #[derive(Debug)]
 pub struct EvaluatedPart {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
-    /// The text that was read, and how.
+    /// The text that was read, with the options.
     pub written: Written,
     /// The solid, with its boundary.
     pub solid: Solid,
-    /// How long reading took, in seconds.
+    /// The duration of reading, in seconds.
     pub read: f64,
-    /// How long the evaluation took, in seconds.
+    /// The duration of the evaluation, in seconds.
     pub evaluate: f64,
 }
 
-/// Reads and evaluates a description; tells the reader's notes and the close calls.
+/// Reads and evaluates a description; reports the reader's notes and the close calls.
 pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedPart, CliError> {
     let voice = session.voice;
     let name = options.file.display().to_string();
@@ -36,7 +36,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
     let text = session.limits.read(&options.file)?;
     let written = Written {
         language: format.ending().to_owned(),
-        // What is no text is not read either.
+        // A file that is not text cannot be read either.
         text: String::from_utf8(text).or_else(|e| not_a_text(&name, format, e.as_bytes()))?,
         part: options.reading.part.clone(),
         smooth: options.reading.smooth,
@@ -56,7 +56,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
     Ok(part)
 }
 
-/// The part of a description, read in the usual way.
+/// The part of a description, read with the default options.
 pub fn described(path: &Path, session: Session) -> Result<EvaluatedPart, CliError> {
     let options = DescriptionOptions {
         file: path.to_owned(),
@@ -65,19 +65,19 @@ pub fn described(path: &Path, session: Session) -> Result<EvaluatedPart, CliErro
     part(&options, session)
 }
 
-/// The part of a description that a model holds.
+/// The part of the description in a model.
 pub fn part_of_model(
     name: &str,
     written: Written,
     voice: Reporter,
 ) -> Result<EvaluatedPart, CliError> {
     let format = language(&written).map_err(|e| CliError::input(format!("{name}: {e}")))?;
-    // Places in it are not places in the model.
+    // Positions in it are not positions in the model.
     let name = format!("{name} (its description)");
     evaluated(name, format, written, Arithmetic::Filtered, voice)
 }
 
-/// What the reader says of bytes that are no text.
+/// The reader's error of bytes that are not text.
 fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, CliError> {
     match reader::parse(name, bytes, format, &ReadOptions::default()) {
         Err(error) => Err(CliError::read(&error, bytes)),
@@ -131,12 +131,12 @@ fn evaluated(
     })
 }
 
-/// What is said of a part without a solid.
+/// The note on a part without a solid.
 pub const EMPTY: &str = "the part is empty: it has no solid";
 
-/// Why there is no view of some parts.
-const UNSEEN: &str = "surfaces lie so nearly along one another that doubles do not tell them apart: \
-    the boundary is known, but no view of it is reckoned with more digits";
+/// The reason why some parts have no view.
+const UNSEEN: &str = "surfaces are so nearly coincident that f64 cannot separate them: \
+    the boundary is known, but views are not computed in extended precision";
 
 /// The resolution for views of a part.
 pub fn view_resolution(part: &EvaluatedPart) -> Result<f64, CliError> {
@@ -144,7 +144,7 @@ pub fn view_resolution(part: &EvaluatedPart) -> Result<f64, CliError> {
     resolution.ok_or_else(|| CliError::limit(format!("{}: {UNSEEN}", part.name)))
 }
 
-/// The language of a file, which its ending says.
+/// The language of a file, by its ending.
 pub fn format(path: &Path) -> Result<Format, CliError> {
     Format::from_path(path).ok_or_else(|| {
         let name = path.display();
@@ -162,13 +162,13 @@ pub fn camera_of_file(path: &Path, session: Session) -> Result<(ViewCamera, Stri
     Ok((camera, text))
 }
 
-/// That a camera of a file is refused, at the key that is wrong.
+/// The error of a camera file, at the wrong key.
 pub fn refused_camera(path: &Path, text: &str, error: &CameraError) -> CliError {
     let name = path.display().to_string();
     CliError::at(&name, text, error.span(text), error)
 }
 
-/// The camera that took pictures, with its file.
+/// The camera of pictures, with its file.
 #[derive(Debug)]
 pub struct PinholeFile {
     name: String,
@@ -189,7 +189,7 @@ impl PinholeFile {
         Ok(Self { name, text, camera })
     }
 
-    /// The camera for a picture of so many pixels.
+    /// The camera for a picture with a width and height in pixels.
     ///
     /// # Errors
     /// It did not take the picture.

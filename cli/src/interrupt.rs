@@ -1,4 +1,4 @@
-//! Long work: on how many threads, and that it ends in good order where it is interrupted.
+//! Long work: its number of threads, and its orderly end at an interrupt.
 
 use crate::diagnostics::CliError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -14,26 +14,26 @@ pub fn stop() -> Result<Arc<AtomicBool>, CliError> {
     Ok(stop)
 }
 
-/// A file that may grow no further is an error of writing it, as a full disk is: without this the system
-/// ends the program, and what is written so far stays.
+/// Makes the limit of a file's size an error of writing, as a full disk is. Without this the system
+/// ends the program, and partial output remains.
 #[cfg(unix)]
 pub fn fail_where_files_are_full() {
     let unread = Arc::new(AtomicBool::new(false));
-    // Where it cannot be set, the program ends, as any other does.
+    // If it cannot be set, the system ends the program at the limit.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, unread);
 }
 
-/// Other systems tell writers themselves.
+/// Other systems report an error to the writer.
 #[cfg(not(unix))]
 pub fn fail_where_files_are_full() {}
 
-/// How many threads work where nothing else is said.
+/// The number of threads, by default that of the cores.
 pub fn threads(requested: Option<u16>) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);
     requested.map_or_else(all, usize::from)
 }
 
-/// So many threads.
+/// A pool of threads.
 pub fn pool(requested: Option<u16>) -> Result<ThreadPool, CliError> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads(requested))

@@ -1,5 +1,4 @@
-//! The program's commands, and the self-checks that cross crates. This crate is the one place that
-//! touches files and the terminal.
+//! The program's commands. Only this crate accesses files and the terminal.
 
 mod arguments;
 mod commands;
@@ -24,7 +23,7 @@ use session::Session;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// The allocator of the program. It is here so that a message can be printed where memory ends.
+/// The allocator of the program, which prints a message when memory is exhausted.
 #[global_allocator]
 static MEMORY: EndingAllocator = EndingAllocator::new();
 

@@ -1,4 +1,4 @@
-//! Writing results: whole, or not at all.
+//! Writing results whole or not at all.
 
 use crate::diagnostics::CliError;
 use premio::files::{is_no_file, staged, target};
@@ -18,14 +18,15 @@ pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), CliError> 
 /// The outputs of a command, which appear together or not at all.
 #[derive(Debug, Default)]
 pub struct Outputs {
-    /// What files are to hold.
+    /// The contents of files.
     files: Vec<(Vec<u8>, PathBuf)>,
-    /// Devices, pipes, and standard output, where there is no path: what is written there stays.
+    /// Devices, pipes, and standard output, where there is no path: their content cannot be taken
+    /// back.
     streams: Vec<(Vec<u8>, Option<PathBuf>)>,
 }
 
 impl Outputs {
-    /// Adds an output: a file, or else standard output.
+    /// Adds an output: a file, or otherwise standard output.
     pub fn add(&mut self, bytes: Vec<u8>, to: Option<&Path>) -> Result<(), CliError> {
         let Some(path) = to else {
             self.streams.push((bytes, None));
@@ -49,11 +50,11 @@ impl Outputs {
         self.add(text.into_bytes(), to)
     }
 
-    /// Puts every output in its place.
+    /// Writes every output to its target.
     pub fn finish(self) -> Result<(), CliError> {
         let failed =
             |path: &Path, e: io::Error| CliError::input(format!("{}: {e}", path.display()));
-        // All are written next to their places before the first is put there.
+        // All are written to temporary files before the first is renamed.
         let mut whole = Vec::new();
         for (bytes, path) in self.files {
             let file = staged(&bytes, &path).map_err(|e| failed(&path, e))?;
@@ -66,7 +67,7 @@ impl Outputs {
                 Some(path) => fs::write(&path, bytes).map_err(|e| failed(&path, e)),
             };
             match written {
-                // The files are still wanted.
+                // The files are still written.
                 Err(CliError::BrokenPipe) => broken = true,
                 written => written?,
             }
@@ -81,14 +82,14 @@ impl Outputs {
     }
 }
 
-/// A value as JSON, without characters that a terminal obeys.
+/// A value as JSON, without terminal control characters.
 pub fn json_text(value: &impl Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string(value);
     text.map(escape::json)
         .map_err(|e| CliError::input(e.to_string()))
 }
 
-/// The same, spread over lines.
+/// A value as JSON, spread over lines.
 pub fn json_pretty(value: &impl Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string_pretty(value);
     text.map(escape::json)

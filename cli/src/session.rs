@@ -1,4 +1,4 @@
-//! What every command is given besides its own options.
+//! The options of every command.
 
 use crate::diagnostics::{CliError, Reporter};
 use clap::Args;
@@ -7,12 +7,12 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// How the program speaks, and how much it takes in.
+/// The reporter, and the limits of input.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Session {
-    /// For whom it speaks.
+    /// The reporter of messages.
     pub voice: Reporter,
-    /// How much it reads.
+    /// The limits of input.
     pub limits: InputLimits,
 }
 
@@ -30,7 +30,7 @@ pub struct InputLimits {
     pub pixels: u64,
 }
 
-/// Before there are options, as in tests.
+/// The default limits, for tests.
 impl Default for InputLimits {
     fn default() -> Self {
         Self {
@@ -64,7 +64,7 @@ fn pixels(text: &str) -> Result<u64, String> {
     }
 }
 
-/// So much is read at once.
+/// The number of bytes that are read at once.
 const PIECE: usize = 1 << 20;
 
 impl InputLimits {
@@ -105,7 +105,7 @@ impl InputLimits {
                 return Err(too_long());
             }
             if bytes.capacity() - bytes.len() < read {
-                // Half as much again: twice as much may not be there.
+                // Half as much again, because twice as much memory may not be available.
                 let more = (bytes.len() / 2).max(PIECE);
                 let most = (self.input as usize).saturating_sub(bytes.len()).max(PIECE);
                 let more = more.min(most);

@@ -1,4 +1,4 @@
-//! Reading setups, and putting parts into them.
+//! Reading setups, and predicting parts in them.
 
 use crate::diagnostics::CliError;
 use crate::input::{self, EvaluatedPart};
@@ -17,14 +17,14 @@ use premio_predict::setup::light::Light;
 use premio_predict::setup::{Conditions, Setup, SetupError, detector_from_toml};
 use std::path::Path;
 
-/// A file about setups, and what it says.
+/// A file of setups with its content.
 #[derive(Debug)]
 pub struct SetupFile<T> {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its text.
     pub text: String,
-    /// What it says.
+    /// Its content.
     pub value: T,
 }
 
@@ -70,7 +70,7 @@ fn read<T>(
 }
 
 impl<T> SetupFile<T> {
-    /// The failure of a part in it.
+    /// The error of a part in it.
     fn failure(&self, part: &EvaluatedPart, error: &StageError) -> CliError {
         CliError::stage(&part.name, [&self.name, &self.text], error)
     }
@@ -98,7 +98,7 @@ impl<T> SetupFile<T> {
         session.voice.note(&self.name, &said);
     }
 
-    /// A part that is seen in setups, with the materials of its faces.
+    /// A part prepared for the setups, with the materials of its faces.
     pub fn subject<'p>(
         &self,
         part: &'p EvaluatedPart,
@@ -109,10 +109,10 @@ impl<T> SetupFile<T> {
         Ok((subject, finishes.map_err(|e| self.failure(part, &e))?))
     }
 
-    /// Says in how many setups nothing of the part is seen.
+    /// Notes in how many setups the part is not visible.
     ///
     /// # Errors
-    /// It is seen in none.
+    /// It is visible in none.
     pub fn check_seen(&self, head: &ModelHead, session: Session) -> Result<(), CliError> {
         let unseen: u64 = head.unseen.values().sum();
         let Some((why, _)) = head.unseen.iter().max_by_key(|(_, count)| **count) else {
@@ -120,12 +120,11 @@ impl<T> SetupFile<T> {
         };
         let count = head.count;
         if unseen < count {
-            let said =
-                format!("nothing of the part is seen in {unseen} of {count} setups, as {why}");
+            let said = format!("the part is not visible in {unseen} of {count} setups: {why}");
             session.voice.note(&self.name, &said);
             return Ok(());
         }
-        let reason = format!("shows nothing of the part in any of {count} setups, as {why}");
+        let reason = format!("does not show the part in any of {count} setups: {why}");
         let error = SetupError::value("viewing.radius", reason);
         Err(CliError::setup(&self.name, &error, &self.text))
     }
@@ -138,10 +137,11 @@ impl<T> SetupFile<T> {
 }
 
 impl SetupFile<Setups> {
-    /// Says which cameras and lights of the spheres are inside the part, where nothing is seen.
+    /// Notes how many cameras and lights of the spheres are inside the part, where nothing is
+    /// visible.
     ///
     /// # Errors
-    /// All of one sphere are, or a light that stands still is.
+    /// All of one sphere are, or a fixed light is.
     pub fn check_places(
         &self,
         subject: &PreparedPart<'_>,
@@ -176,7 +176,7 @@ impl SetupFile<Setups> {
                 (0, 0) => continue,
                 (0, _) => format!("{boxed} of {all} {what} are inside the part's box"),
                 _ => format!(
-                    "{inside} of {all} {what} are inside the part: nothing is seen in these setups"
+                    "{inside} of {all} {what} are inside the part: nothing is visible in these setups"
                 ),
             };
             session.voice.note(&self.name, &said);
@@ -185,13 +185,13 @@ impl SetupFile<Setups> {
     }
 }
 
-/// Whether a box holds a point.
+/// Whether a box contains a point.
 fn contains(bounds: &Aabb, p: &Point3<f64>) -> bool {
     (0..3).all(|i| (bounds.min[i]..=bounds.max[i]).contains(&p[i]))
 }
 
 impl SetupFile<Setup> {
-    /// Asks something of the draft of a part's image.
+    /// Evaluates a function on the predicted image of a part.
     pub fn with_draft<T>(
         &self,
         part: &EvaluatedPart,

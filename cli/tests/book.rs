@@ -1,9 +1,11 @@
-//! The README and the book: their commands run and print what is shown, their references are complete.
+//! The README and the book: their commands run and print what is shown, their references are
+//! complete.
 //!
 //! A block with the language `console` or `sh` is an example. A line that begins with `premio ` or
 //! `$ premio ` is a command. The lines after `$ premio` are its output, in which `…` stands for
-//! anything. `parse-only` in the info string only parses the command; `status=N` expects another exit
-//! status. A block after a line that ends with the name of a file, as in "`plate.padl`:", is that file.
+//! anything. `parse-only` in the info string only parses the command; `status=N` expects another
+//! exit status. A block after a line that ends with the name of a file, as in "`plate.padl`:", is
+//! that file.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod common;
@@ -14,7 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// What stands for anything in an output.
+/// The wildcard of an output.
 const ANYTHING: char = '…';
 
 /// A page of Markdown.
@@ -211,7 +213,7 @@ fn premio(folder: &Path, words: &[String]) -> Output {
 }
 
 impl Example<'_> {
-    /// What is wrong with it in a folder.
+    /// The error of the command in a folder.
     fn failure(&self, folder: &Path) -> Option<String> {
         let mut words = self.words.clone();
         if self.parse_only {
@@ -254,7 +256,7 @@ fn files(pages: &[Page]) -> BTreeMap<String, String> {
     files
 }
 
-/// What is wrong with the examples of a page, run in their order in a folder with all files.
+/// The errors of the examples of a page, run in their order in a folder with all files.
 fn failures(page: &Page, files: &BTreeMap<String, String>) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {

@@ -1,4 +1,4 @@
-//! `premio fuzz` from outside: exit status, summary, models, and going on where it ended.
+//! `premio fuzz` from outside: exit status, summary, models, and continuing a run.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod common;
@@ -28,7 +28,7 @@ fn a_few_trees_of_each_profile_are_right() {
     });
     assert_eq!(one, two);
     assert_eq!(one.1, Some(0));
-    // What is close changes with every better algorithm.
+    // The close calls change with every better algorithm.
     for part in one.0["profiles"].as_object_mut().unwrap().values_mut() {
         part["close_calls"] = "counts".into();
     }
@@ -44,9 +44,9 @@ fn a_few_trees_of_each_profile_are_right() {
     assert!(large.status.success() && large.stderr.is_empty());
 }
 
-/// A tree that is given no time is wrong, and refused ones are counted by reason.
+/// A tree with a time limit of zero is wrong, and refused ones are counted by reason.
 #[test]
-fn finds_are_told() {
+fn findings_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let slow = premio(
         folder.path(),

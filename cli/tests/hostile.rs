@@ -60,7 +60,7 @@ fn two_outputs_are_two_files() {
     ] {
         assert_says(&refused(path, words), &["one file", "a file for each"]);
     }
-    // One that cannot be written leaves nothing of the other.
+    // If one cannot be written, the other is not written either.
     let words = "predict part.padl --setup setup.toml --overlay a.svg -o none/a.json";
     assert_says(&refused(path, words), &["none/a.json"]);
 }
@@ -392,7 +392,7 @@ fn a_picture_that_is_not_read_leaves_the_others() {
     let lines = fs::read_to_string(path.join("out.jsonl")).unwrap();
     assert_eq!(lines.lines().count(), 2, "{lines}");
     fs::remove_file(path.join("out.jsonl")).unwrap();
-    // Of none there is nothing to be written.
+    // Without any, nothing is written.
     refused(
         path,
         "match part.model bad.png bad.png --camera camera.json -o out.jsonl",
@@ -465,7 +465,7 @@ fn what_cannot_be_seen_is_said() {
         &text,
         &["inside.toml:3:1", "all 4 viewpoints inside the part"],
     );
-    // A wide lens, so that what is near is seen.
+    // A wide lens, so that near objects are visible.
     let wide = "[viewing]\ncount = 12\nradius = 2.8\n[sensor]\nfilm = [20, 15]\nresolution = [160, 120]\n\
         [[light]]\nposition = [40, -16, 30]\n";
     fs::write(path.join("inside.toml"), wide).unwrap();

@@ -56,8 +56,8 @@ fn a_prediction_has_five_levels_with_their_relations() {
             assert!(arcs.iter().all(|arc| number(arc) < count("arcs")));
         }
     }
-    // Of the block three faces are seen, and of the bore its wall; the edges of its top are whole or
-    // told why they are not.
+    // Three faces of the block are visible, and the wall of the bore; the edges of its top are
+    // whole or have the reason why they are not.
     for arc in value["arcs"].as_array().unwrap() {
         let told =
             arc["state"] == "whole" || arc["smooth"] == true || arc["reason"]["why"].is_string();
@@ -89,7 +89,7 @@ fn predictions_are_as_the_published_schema_says() {
         .map(|e| e.to_string())
         .collect();
     assert!(errors.is_empty(), "{errors:?}");
-    // And it can tell: an arc's state is one of three.
+    // The schema is effective: an arc's state is one of three.
     let mut wrong = prediction;
     wrong["arcs"][0]["state"] = "seen".into();
     assert!(!validator.is_valid(&wrong));

@@ -103,11 +103,11 @@ fn a_part_is_found_by_its_description_and_by_its_model() {
         assert_eq!(report["schema"], "premio.match/1");
         assert_eq!(report["found"], true, "{report:#}");
         assert!(schema.is_valid(&report), "{report:#}");
-        // And it can tell: a feature's state is one of three.
+        // The schema is effective: a feature's state is one of three.
         let mut wrong = report.clone();
         wrong["features"][0]["state"] = "seen".into();
         assert!(!schema.is_valid(&wrong));
-        // The block is 6 by 4 by 2, its middle (3, 2, 1): alike when it is turned by half.
+        // The block is 6 by 4 by 2 with its centre at (3, 2, 1): symmetric under half turns.
         let all = [&report]
             .into_iter()
             .chain(report["alternatives"].as_array().unwrap());
@@ -172,7 +172,7 @@ fn what_is_not_there_is_told_with_why() {
 }
 
 #[test]
-fn what_is_wrong_with_the_input_is_told() {
+fn errors_of_the_input_are_reported() {
     let folder = folder();
     let wrong = [
         (

@@ -1,4 +1,4 @@
-//! Models and shards that say what cannot be, though their digests are right: refused at their lines.
+//! Inconsistent models and shards with correct digests: refused at their lines.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod common;

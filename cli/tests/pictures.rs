@@ -12,9 +12,9 @@ fn prepared() -> TempDir {
     folder(&[("camera.json", CAMERA)])
 }
 
-/// What is said of a picture.
+/// The message about a picture.
 #[track_caller]
-fn told(folder: &TempDir, name: &str, bytes: &[u8], status: i32) -> String {
+fn message(folder: &TempDir, name: &str, bytes: &[u8], status: i32) -> String {
     let path = folder.path();
     fs::write(path.join(name), bytes).unwrap();
     let words = format!("match part.padl {name} --camera camera.json -o out.json");
@@ -60,12 +60,12 @@ fn every_checksum_of_a_png_is_compared() {
     let folder = prepared();
     let mut chunks = chunks();
     chunks.insert(2, chunk(b"tEXt", b"Title\0part"));
-    told(&folder, "good.png", &chunks.concat(), 0);
+    message(&folder, "good.png", &chunks.concat(), 0);
     for k in 1..chunks.len() {
         let mut bad = chunks.clone();
         *bad[k].last_mut().unwrap() ^= 1;
         let kind = String::from_utf8(bad[k][4..8].to_vec()).unwrap();
-        let text = told(&folder, "bad.png", &bad.concat(), 2);
+        let text = message(&folder, "bad.png", &bad.concat(), 2);
         assert_says(&text, &["bad.png", "checksum", &kind]);
     }
 }
@@ -78,7 +78,7 @@ fn the_checksum_of_compressed_data_is_compared() {
     let mut data = chunks[2][8..chunks[2].len() - 4].to_vec();
     *data.last_mut().unwrap() ^= 1;
     chunks[2] = chunk(b"IDAT", &data);
-    let text = told(&folder, "bad.png", &chunks.concat(), 2);
+    let text = message(&folder, "bad.png", &chunks.concat(), 2);
     assert_says(&text, &["bad.png"]);
 }
 
@@ -90,7 +90,7 @@ fn a_png_that_is_too_large_says_how_large() {
     header[..8].fill(0xff);
     (header[0], header[4]) = (0x7f, 0x7f);
     chunks[1] = chunk(b"IHDR", &header);
-    let text = told(&folder, "bad.png", &chunks.concat(), 2);
+    let text = message(&folder, "bad.png", &chunks.concat(), 2);
     assert_says(&text, &["2147483647 x 2147483647", "--max-pixels"]);
 }
 
@@ -98,19 +98,19 @@ fn a_png_that_is_too_large_says_how_large() {
 fn a_jpeg_with_missing_data_is_refused() {
     let folder = prepared();
     let bytes = common::JPEG;
-    told(&folder, "good.jpg", bytes, 0);
+    message(&folder, "good.jpg", bytes, 0);
     let scan = bytes.windows(2).position(|w| w == [0xff, 0xda]).unwrap();
     for tenths in 2..10 {
         let end = scan + (bytes.len() - scan) * tenths / 10;
         let cut = [&bytes[..end], &[0xff, 0xd9]].concat();
-        let text = told(&folder, "bad.jpg", &cut, 2);
+        let text = message(&folder, "bad.jpg", &cut, 2);
         assert_says(&text, &["bad.jpg", "a part of a picture", "at byte"]);
     }
     let frame = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
     for (offset, size) in [(5, 240u16), (7, 320), (5, 129)] {
         let mut larger = bytes.to_vec();
         larger[frame + offset..frame + offset + 2].copy_from_slice(&size.to_be_bytes());
-        let text = told(&folder, "bad.jpg", &larger, 2);
+        let text = message(&folder, "bad.jpg", &larger, 2);
         assert_says(&text, &["bad.jpg", "a part of a picture"]);
     }
 }
@@ -123,18 +123,18 @@ fn a_sample_above_white_is_refused() {
     let mut bright = dark;
     bright[163] = 255;
     let header = "P5\n# a comment\n160 120\n10\n";
-    told(&folder, "good.pgm", &with(header, &dark), 0);
-    let text = told(&folder, "bad.pgm", &with(header, &bright), 2);
+    message(&folder, "good.pgm", &with(header, &dark), 0);
+    let text = message(&folder, "bad.pgm", &with(header, &bright), 2);
     assert_says(&text, &["bad.pgm", "255 at pixel (3, 1)", "at most 10"]);
     let wide = dark.map(|v| [v, 0]).concat();
     let header = "P5\n160 120\n2000\n";
     assert_says(
-        &told(&folder, "bad.pgm", &with(header, &wide), 2),
+        &message(&folder, "bad.pgm", &with(header, &wide), 2),
         &["2304 at pixel (0, 0)"],
     );
-    let text = told(&folder, "bad.pgm", b"P2\n3 1\n255\n1 2 256\n", 2);
+    let text = message(&folder, "bad.pgm", b"P2\n3 1\n255\n1 2 256\n", 2);
     assert_says(&text, &["256 at pixel (2, 0)", "at most 255"]);
-    let text = told(&folder, "bad.ppm", b"P3\n2 1\n7\n1 2 3 4 5 8\n", 2);
+    let text = message(&folder, "bad.ppm", b"P3\n2 1\n7\n1 2 3 4 5 8\n", 2);
     assert_says(&text, &["8 at pixel (1, 0)", "at most 7"]);
 }
 
@@ -156,8 +156,8 @@ fn a_colour_beyond_the_palette_is_refused() {
         bytes
     };
     for (depth, x) in [(png::BitDepth::Eight, 1), (png::BitDepth::Two, 7)] {
-        told(&folder, "good.png", &picture(4, depth), 0);
-        let text = told(&folder, "bad.png", &picture(3, depth), 2);
+        message(&folder, "good.png", &picture(4, depth), 0);
+        let text = message(&folder, "bad.png", &picture(3, depth), 2);
         let place = format!("colour 3 at pixel ({x}, 1)");
         assert_says(&text, &["bad.png", &place, "below 3"]);
     }

@@ -304,7 +304,7 @@ fn descriptions_are_converted() {
     let back = premio(folder.path(), "convert part.json again.padl --exact");
     assert!(back.status.success(), "{back:?}");
     assert_eq!(volume("again.padl"), volume("part.padl"));
-    // What a language cannot hold is said, or refused.
+    // Numbers that a language cannot express are reported, or refused.
     fs::write(path("third.padl"), "P = SPH(R=1/3) UN BLO(X=1, Y=1, Z=1)\n").unwrap();
     let near = premio(folder.path(), "convert third.padl third.json");
     let said = String::from_utf8(near.stderr).unwrap();
@@ -315,7 +315,7 @@ fn descriptions_are_converted() {
     let refused = premio(folder.path(), "convert third.padl exact.json --exact");
     assert_eq!(refused.status.code(), Some(3));
     assert!(!path("exact.json").exists());
-    // Faces that six digits keep apart coincide in a .csg alone.
+    // Faces that differ in six digits coincide in a .csg only.
     let turned = |offset: &str| {
         format!("multmatrix([[0.866025,-0.5,0,{offset},[0,0,1,0],[0,0,0,1]]) {{ cube(10); }}\n")
     };

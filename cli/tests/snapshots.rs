@@ -1,4 +1,4 @@
-//! What the program writes, kept whole: a change of any output is seen before it is taken.
+//! Snapshots of complete outputs: every change of an output is reviewed before it is accepted.
 //!
 //! Numbers are kept to nine digits, so that the last bits of a platform's sine do not count.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
@@ -43,7 +43,7 @@ fn json(text: &str) -> String {
             Value::Array(all) => all.iter_mut().for_each(clean),
             Value::Object(all) => {
                 all.remove("seconds");
-                // How many questions are asked changes with every better algorithm.
+                // The number of evaluated decisions changes with every better algorithm.
                 for count in ["filtered", "refined", "exact", "coincident"] {
                     all.entry(count).and_modify(|n| *n = "a count".into());
                 }

@@ -1,4 +1,4 @@
-//! Parts of which nothing is left, and eyes and lights that see nothing: what is said of them.
+//! The messages for empty parts, and for eyes and lights that see nothing.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod common;
@@ -7,7 +7,7 @@ use common::{SETUP, assert_says, folder, premio, said};
 use std::fs;
 use std::path::Path;
 
-/// What is said of a command that ends with a status.
+/// The message of a command that ends with a status.
 #[track_caller]
 fn ends(folder: &Path, words: &str, status: i32) -> String {
     let output = premio(folder, words);
@@ -40,7 +40,8 @@ fn an_empty_part_is_said_to_be_empty() {
     assert_says(&ends(path, words, 0), &["the part is empty"]);
 }
 
-/// Exact lengths tell every sliver from nothing, however thin; turns are rounded to f64 values.
+/// Exact lengths distinguish every sliver from an empty solid, however thin; rotations are rounded
+/// to f64 values.
 #[test]
 fn a_sliver_is_told_from_rounding() {
     let block = "A = BLO(X=1000, Y=1000, Z=1000)\n";
@@ -116,7 +117,8 @@ fn a_light_without_radiance_is_none() {
     assert_says(&text, &["dark.toml", "no `[[light]]` that shines"]);
 }
 
-/// The eye is next to the part, so that the surface that mirrors the light runs on far outside the image.
+/// The eye is next to the part, so that the surface that reflects the light extends far outside the
+/// image.
 #[test]
 fn a_highlight_far_outside_the_image_is_left() {
     let setup = SETUP

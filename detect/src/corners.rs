@@ -1,4 +1,4 @@
-//! Corners: where segments meet at an angle (Haralick & Shapiro ch. 11).
+//! Corners: points where segments end at an angle to each other (Haralick & Shapiro ch. 11).
 
 use super::detection::{DetectedCorner, DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
 use super::detector::Detector;
@@ -8,8 +8,8 @@ use super::joining::End;
 /// The sine of the least angle at which segments make a corner: 20 degrees.
 const MARKED: f64 = 0.342_020_143_325_668_7;
 
-/// How far a corner may be from the ends that make it, in reaches of the detector: beyond, lines
-/// that are nearly parallel do not tell it.
+/// The greatest distance of a corner from the ends that form it, in radii of the detector
+/// (`reach`). Farther away, nearly parallel lines do not determine it.
 const FAR: f64 = 3.0;
 
 /// An end of a segment that may be at a corner.
@@ -20,7 +20,7 @@ struct Arm {
     free: bool,
 }
 
-/// Finds the corners of segments. Ends of chains are close together where a mask could see both.
+/// Finds the corners of segments. Ends of chains are near each other where one mask can cover both.
 pub(super) fn corners(
     detector: &Detector,
     pixels: &[EdgePixel],
@@ -49,18 +49,18 @@ pub(super) fn corners(
     }
     let corner = |m: &Vec<usize>| {
         let arms: Vec<&Arm> = m.iter().map(|&i| &arms[i]).collect();
-        meet(&arms, FAR * reach)
+        corner_of(&arms, FAR * reach)
     };
     members.iter().filter_map(corner).collect()
 }
 
-/// How far apart, in pixels, ends of chains are at most that make a corner.
+/// The greatest distance between ends of chains that form a corner, in pixels.
 fn reach(detector: &Detector) -> f64 {
     detector.gap.max((2 * detector.radius() + 1) as f64)
 }
 
-/// Brings the ends of lines that make corners next to these: there the mask rounds the edge off, or
-/// sees none.
+/// Extends the ends of lines that form corners to these: near a corner the mask rounds the edge off
+/// or finds none.
 pub(super) fn extend(
     detector: &Detector,
     corners: &[DetectedCorner],
@@ -77,7 +77,7 @@ pub(super) fn extend(
             let along = unit([ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]]);
             let step = [0, 1].map(|c| corner.at[c] - ends[near][c]);
             let length = along[0] * step[0] + along[1] * step[1];
-            // A line is not turned over.
+            // A line is not reversed.
             let shorter = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]) / 2.0;
             if away[near] <= reach && length.abs() < shorter {
                 ends[near] = [0, 1].map(|c| ends[near][c] + length * along[c]);
@@ -86,8 +86,8 @@ pub(super) fn extend(
     }
 }
 
-/// The ends of all segments, two for each, and for each the one it is joined to along the chain, or
-/// itself.
+/// The ends of all segments, two for each, and for each the index of the end that it is joined to
+/// along the chain, or its own.
 fn arms(
     pixels: &[EdgePixel],
     chains: &[EdgeChain],
@@ -125,7 +125,7 @@ fn arms(
     (arms, groups)
 }
 
-/// The ends of a shape, with the tangents there; where it has none, bare points.
+/// The ends of a shape, with the tangents there; points without tangents where it has none.
 fn tangents(shape: &SegmentShape, bare: [[f64; 2]; 2]) -> [End; 2] {
     match shape {
         SegmentShape::Line { ends } => {
@@ -146,7 +146,7 @@ fn tangents(shape: &SegmentShape, bare: [[f64; 2]; 2]) -> [End; 2] {
     }
 }
 
-/// The direction of a conic at a point of it, to either side.
+/// The tangent direction of a conic at a point of it, of either sign.
 fn tangent([a, b, c, d, e, _]: &[f64; 6], [x, y]: [f64; 2]) -> [f64; 2] {
     unit([-(b * x + 2.0 * c * y + e), 2.0 * a * x + b * y + d])
 }
@@ -160,14 +160,15 @@ fn unit(v: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Whether the lines of two ends make a marked angle.
+/// Whether the lines of two ends have an angle of at least `MARKED`.
 fn marked(p: &Arm, q: &Arm) -> bool {
     let [a, b] = [p.end.along, q.end.along];
     (a[0] * b[1] - a[1] * b[0]).abs() >= MARKED
 }
 
-/// The corner of ends, if two of them make a marked angle: the point nearest to their lines.
-fn meet(arms: &[&Arm], far: f64) -> Option<DetectedCorner> {
+/// The corner of ends, if two of them have an angle of at least `MARKED`: the point nearest to
+/// their lines.
+fn corner_of(arms: &[&Arm], far: f64) -> Option<DetectedCorner> {
     let pair = |(i, p): (usize, &&Arm)| arms[i + 1..].iter().any(|q| marked(p, q));
     if !arms.iter().enumerate().any(pair) {
         return None;

@@ -1,19 +1,19 @@
-//! What a detector finds. Positions are in pixels, at sub-pixel accuracy, in image axes: pixel
+//! The result of a detector. Positions are in pixels, at sub-pixel accuracy, in image axes: pixel
 //! (x, y) has its centre at (x, y), y downwards.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is found in an image.
+/// The detection in an image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Detection {
     /// The edge pixels after thinning, row by row; also those of chains that are too short.
     pub pixels: Vec<EdgePixel>,
     /// The pixels linked in order.
     pub chains: Vec<EdgeChain>,
-    /// The chains cut into lines and conics; those of a chain follow one another.
+    /// The chains cut into lines and conics; the segments of a chain are consecutive.
     pub segments: Vec<DetectedSegment>,
-    /// Where segments meet at an angle.
+    /// The corners of segments.
     pub corners: Vec<DetectedCorner>,
 }
 
@@ -24,8 +24,8 @@ pub struct EdgePixel {
     pub x: u32,
     /// Its row.
     pub y: u32,
-    /// The edge within it: the top of the parabola through the gradient magnitudes across the
-    /// edge, along that image axis to which the gradient is nearer (Devernay 1995).
+    /// The sub-pixel position of the edge in it: the maximum of the parabola through the gradient
+    /// magnitudes across the edge, along the image axis nearer to the gradient (Devernay 1995).
     pub at: [f64; 2],
     /// The gradient, in levels per pixel: it points to the bright side.
     pub gradient: [f64; 2],
@@ -47,12 +47,13 @@ pub struct EdgeChain {
 pub struct DetectedSegment {
     /// The index of its chain.
     pub chain: u32,
-    /// Which pixels of the chain it takes, half open. A closed chain starts where a segment does.
+    /// The half-open range of the chain's pixels that it covers. A closed chain starts where a
+    /// segment does.
     pub range: [u32; 2],
     /// The fitted curve.
     pub shape: SegmentShape,
-    /// The root mean square distance, in pixels, of the fitted points from the curve. Next to the
-    /// ends of a long segment, where the mask sees what is beyond, points are not fitted.
+    /// The root mean square distance, in pixels, of the fitted points from the curve. Points near
+    /// the ends of a long segment, where the mask covers what is beyond, are not fitted.
     pub rms: f64,
 }
 
@@ -62,17 +63,18 @@ pub struct DetectedSegment {
 pub enum SegmentShape {
     /// A straight line.
     Line {
-        /// The first and the last pixel, brought onto the line; at a corner, the point next to it;
-        /// at another split the pixel beyond it, if that is farther out.
+        /// The first and the last pixel, projected onto the line; at a corner, the point nearest to
+        /// it; at another split the pixel beyond it, if that is farther out.
         ends: [[f64; 2]; 2],
     },
     /// A part of an ellipse.
     Arc {
         /// a, b, c, d, e, f of a x² + b x y + c y² + d x + e y + f = 0, the largest being 1.
         conic: [f64; 6],
-        /// The first and the last pixel, brought onto the ellipse.
+        /// The first and the last pixel, projected onto the ellipse.
         ends: [[f64; 2]; 2],
-        /// The pixel in the middle, brought onto the ellipse: it tells on which side the arc runs.
+        /// The middle pixel, projected onto the ellipse: it determines which of the two arcs is
+        /// meant.
         middle: [f64; 2],
     },
     /// A whole ellipse.
@@ -86,12 +88,13 @@ pub enum SegmentShape {
     },
 }
 
-/// Where segments meet at an angle: consecutive ones of a chain, or those at chain ends close
-/// together.
+/// A point where segments end at an angle to each other: consecutive ones of a chain, or those at
+/// chain ends near each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetectedCorner {
     /// The point nearest to all their lines, or tangents.
     pub at: [f64; 2],
-    /// The indices of the segments, increasing; one alone where a closed arc meets itself.
+    /// The indices of the segments, increasing; one alone where a closed arc has a corner with
+    /// itself.
     pub segments: Vec<u32>,
 }

@@ -1,4 +1,4 @@
-//! The detector: what it is told, and its steps.
+//! The detector: its parameters and its steps.
 
 use super::corners::{corners, extend};
 use super::detection::Detection;
@@ -19,21 +19,22 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detector {
-    /// How the gradient is found.
+    /// The gradient mask.
     pub mask: Mask,
-    /// How large the gradient of an edge is at least, in grey levels per pixel.
+    /// The least gradient of an edge, in grey levels per pixel.
     pub threshold: f64,
-    /// Weaker pixels down to this, in grey levels per pixel, are kept where 8-neighbours join them
-    /// to strong ones (hysteresis, Canny 1986); at most the threshold.
+    /// The low threshold, in grey levels per pixel: weaker pixels down to it are kept where
+    /// 8-neighbours join them to strong ones (hysteresis, Canny 1986). It is at most the threshold.
     pub low: Option<f64>,
     /// How edges become one pixel thick.
     pub thinning: Thinning,
-    /// Ends of chains this near, in pixels, are joined where their directions agree.
+    /// The distance, in pixels, within which ends of chains are joined where their directions
+    /// agree.
     pub gap: f64,
-    /// Shorter chains, in pixels along them, are dropped.
+    /// The length, in pixels, below which chains are dropped.
     pub shortest: f64,
-    /// How far, in pixels, a chain may leave its chord or fitted curve before it is split (Ramer
-    /// 1972).
+    /// The greatest distance, in pixels, of a chain from its chord or fitted curve before it is
+    /// split (Ramer 1972).
     pub corner: f64,
 }
 
@@ -60,16 +61,17 @@ pub enum Mask {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Thinning {
-    /// A pixel stays if the gradient is largest there, against magnitudes interpolated along the
-    /// gradient on both sides (Canny 1986).
+    /// A pixel is kept if its gradient magnitude is the largest, compared with magnitudes
+    /// interpolated along the gradient on both sides (Canny 1986).
     #[default]
     NonMaximum,
-    /// All pixels above the threshold are edges, and shrink as long as they stay connected, the
-    /// weakest first (the connected shrink operator, Haralick & Shapiro ch. 6); ends of lines stay.
+    /// All pixels above the threshold are edges. They shrink as long as they stay connected, the
+    /// weakest first (the connected shrink operator, Haralick & Shapiro ch. 6); ends of lines are
+    /// kept.
     Shrink,
 }
 
-/// Why a detector is none.
+/// Why the parameters of a detector are invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum DetectorError {
     /// A value is not a number, or out of its range.
@@ -77,12 +79,12 @@ pub enum DetectorError {
     Value {
         /// The name of the field.
         name: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// What it may be, in words.
+        /// Its valid range, in words.
         range: &'static str,
     },
-    /// The low threshold is above the other.
+    /// The low threshold is above the threshold.
     #[error("`low` is {}, above `threshold`, {}", number(*low), number(*threshold))]
     LowAboveThreshold {
         /// The low threshold, in levels per pixel.
@@ -93,7 +95,7 @@ pub enum DetectorError {
 }
 
 impl DetectorError {
-    /// The key that it is about, within the detector.
+    /// The key of the error, within the detector.
     pub fn key(&self) -> &'static str {
         match self {
             Self::Value { name: "sigma", .. } => "mask.gaussian.sigma",
@@ -104,10 +106,11 @@ impl DetectorError {
 }
 
 impl Mask {
-    /// The least and the greatest width of a Gaussian: less is no mask of pixels, more is no edge.
+    /// The least and the greatest width of a Gaussian: a smaller one is no mask of pixels, a larger
+    /// one finds no edge.
     const SIGMAS: [f64; 2] = [0.375, 20.0];
 
-    /// How many pixels it looks at to each side.
+    /// Its radius in pixels.
     pub fn radius(self) -> usize {
         match self {
             Self::Roberts | Self::Prewitt | Self::Sobel => 1,
@@ -115,7 +118,7 @@ impl Mask {
         }
     }
 
-    /// The nearest width that a mask can have.
+    /// The nearest valid width of a mask.
     pub(super) fn usable(sigma: f64) -> f64 {
         let [least, greatest] = Self::SIGMAS;
         if sigma.is_nan() {
@@ -125,7 +128,7 @@ impl Mask {
         }
     }
 
-    /// Where it is centred, relative to its pixel, along both axes.
+    /// The offset of its centre from its pixel, along both axes.
     pub(super) fn centre(self) -> f64 {
         match self {
             Self::Roberts => 0.5,
@@ -150,7 +153,7 @@ impl Default for Detector {
 }
 
 impl Detector {
-    /// Whether all values are what they may be.
+    /// Checks that all values are in their ranges.
     pub fn validate(&self) -> Result<(), DetectorError> {
         let positive = "positive and finite";
         let not_negative = "zero or more, and finite";
@@ -174,8 +177,8 @@ impl Detector {
         Ok(())
     }
 
-    /// How many pixels about an edge must be known for it to be found: those of the mask, and the
-    /// one to which thinning compares.
+    /// The number of known pixels around an edge that its detection needs: those of the mask, and
+    /// one for the comparison of thinning.
     pub fn radius(&self) -> usize {
         self.mask.radius() + 1
     }
@@ -186,7 +189,7 @@ impl Detector {
         self.detect_with(&mut Workspace::new(), grey, domain)
     }
 
-    /// Finds the same in memory that is used again.
+    /// Finds the edges in reused memory.
     pub fn detect_with(&self, work: &mut Workspace, grey: &Grey, domain: &PixelMask) -> Detection {
         let size = grey.width.checked_mul(grey.height);
         let usable = size.is_some_and(|n| n == grey.levels.len() && u32::try_from(n).is_ok());

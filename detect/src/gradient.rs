@@ -5,11 +5,10 @@ use super::grey::Grey;
 use super::pixel_mask::PixelMask;
 use std::ops::Range;
 
-/// Magnitudes this near, relatively, are equal: what rounding makes of equal ones must not open
-/// an edge.
+/// The relative tolerance of equal magnitudes: rounding of equal ones must not open an edge.
 pub(super) const ROUNDING: f32 = 32.0 * f32::EPSILON;
 
-/// The gradient of an image on a domain; outside of it the values mean nothing.
+/// The gradient of an image on a domain; outside of it the values are undefined.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gradient {
     pub width: usize,
@@ -17,11 +16,11 @@ pub(super) struct Gradient {
     pub x: Vec<f32>,
     /// In levels per pixel, down the columns.
     pub y: Vec<f32>,
-    /// The magnitude; zero where the gradient is no number.
+    /// The magnitude; zero where the gradient is NaN.
     pub size: Vec<f32>,
-    /// The image smoothed along rows, for masks that are done by rows and columns.
+    /// The image smoothed along rows, for separable masks.
     smooth: Vec<f32>,
-    /// The derivative along rows, for such masks.
+    /// The derivative along rows, for separable masks.
     slope: Vec<f32>,
 }
 
@@ -72,7 +71,7 @@ impl Gradient {
         }
     }
 
-    /// Differences along the diagonals of two by two pixels, turned to the image axes: Roberts.
+    /// Differences along the diagonals of two by two pixels, rotated to the image axes: Roberts.
     fn by_diagonals(&mut self, grey: &Grey, inner: &PixelMask) {
         for run in runs(inner, self.width) {
             let n = run.len();
@@ -104,7 +103,7 @@ impl Gradient {
     }
 }
 
-/// The known stretches of rows by their places in the image.
+/// The known runs of rows as index ranges of the image.
 pub(super) fn runs(domain: &PixelMask, width: usize) -> impl Iterator<Item = Range<usize>> {
     (0..domain.height()).flat_map(move |y| {
         let spans = domain.spans(y).iter();
@@ -144,7 +143,7 @@ impl Taps {
         self.weights.len() - 1
     }
 
-    /// Smooths along a run, over pixels `step` places apart.
+    /// Smooths along a run, over pixels at a distance of `step` in the image array.
     fn smooth(&self, from: &[f32], to: &mut [f32], run: &Range<usize>, step: usize) {
         let to = &mut to[run.clone()];
         for (to, from) in to.iter_mut().zip(&from[run.clone()]) {
@@ -159,7 +158,7 @@ impl Taps {
         }
     }
 
-    /// Derives along a run, over pixels `step` places apart.
+    /// Differentiates along a run, over pixels at a distance of `step` in the image array.
     fn derive(&self, from: &[f32], to: &mut [f32], run: &Range<usize>, step: usize) {
         let to = &mut to[run.clone()];
         to.fill(0.0);
@@ -216,7 +215,7 @@ mod tests {
             let row = &gradient.x[12 * 30..13 * 30];
             let top = row[8..22].iter().copied().fold(0.0, f32::max);
             assert_eq!(row[14], top, "{mask:?}");
-            // Two neighbours share the step, but for the mask between pixels.
+            // Two neighbours share the step, except for the mask between pixels.
             let shared = mask == Mask::Roberts || row[15] == top;
             assert!(shared, "{mask:?}");
             assert!(gradient.y[12 * 30 + 14].abs() < 1e-5);

@@ -7,12 +7,12 @@ pub struct Grey {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Grey levels, row by row; what is not a number is an unknown level, and has no gradient.
+    /// Grey levels, row by row; NaN is an unknown level, and has no gradient.
     pub levels: Vec<f32>,
 }
 
 impl Grey {
-    /// The image whose level at column x and row y a function tells.
+    /// The image whose levels a function of column and row gives.
     pub fn new(width: usize, height: usize, level: impl Fn(usize, usize) -> f32) -> Self {
         let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         Self {

@@ -3,16 +3,17 @@
 use super::detection::{EdgeChain, EdgePixel};
 use super::detector::Detector;
 
-/// The cosine of the largest angle between chains that are joined: 30 degrees.
+/// The cosine of the greatest angle between chains that are joined: 30 degrees.
 const AGREEING: f64 = 0.866_025_403_784_438_6;
 
-/// Over how many pixels the direction of an end is taken.
+/// The number of pixels that determine the direction of an end.
 const REACH: usize = 6;
 
-/// Nearer ends than this, in pixels, are joined whatever the direction from one to the other.
+/// Ends nearer to each other than this, in pixels, are joined whatever the direction from one to
+/// the other.
 const TOUCHING: f64 = 2.0;
 
-/// Joined to itself, a chain has this many pixels at least.
+/// The fewest pixels of a chain that is joined to itself.
 const RING: usize = 8;
 
 /// An end of a chain: where it is, and the direction of the chain there, of length one.
@@ -40,7 +41,7 @@ pub(super) fn ends(chain: &EdgeChain, pixels: &[EdgePixel]) -> [End; 2] {
     ]
 }
 
-/// The direction of a few pixels in order: from end to end, or where they are too few, that with
+/// The direction of a few pixels in order: from end to end, or where they are too few, the one with
 /// the gradient on the right.
 fn direction(list: &[u32], pixels: &[EdgePixel]) -> [f64; 2] {
     let [first, last] = [list[0], list[list.len() - 1]].map(|i| pixels[i as usize].at);
@@ -61,8 +62,8 @@ fn direction(list: &[u32], pixels: &[EdgePixel]) -> [f64; 2] {
     }
 }
 
-/// Joins chains whose ends are near in the detector's sense, drops the short ones, and brings the
-/// others into the order of their first pixels.
+/// Joins chains whose ends are within the detector's gap, drops the short ones, and sorts the
+/// others by their first pixels.
 pub(super) fn join(
     chains: Vec<EdgeChain>,
     pixels: &[EdgePixel],
@@ -75,7 +76,7 @@ pub(super) fn join(
     }
     let mut used = vec![false; chains.len()];
     let mut joined = Vec::new();
-    // From the chains that begin a row, and then around rings.
+    // First from the chains that no other precedes, and then around rings.
     let order = (0..chains.len()).filter(|&i| !preceded[i]);
     for start in order.chain(0..chains.len()) {
         if !used[start] {
@@ -87,7 +88,7 @@ pub(super) fn join(
     joined
 }
 
-/// The chain that follows each one, if any.
+/// By chain: the one that follows it, if any.
 fn partners(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<usize>> {
     let mut next = vec![None; chains.len()];
     let mut taken = vec![false; chains.len()];
@@ -100,7 +101,8 @@ fn partners(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<
     next
 }
 
-/// The chains of which the second may follow the first, the nearest and straightest pairs first.
+/// The pairs of chains of which the second may follow the first, the nearest and straightest pairs
+/// first.
 fn pairs(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<(f64, usize, usize)> {
     let open = (0..chains.len()).filter(|&i| !chains[i].closed);
     let ends: Vec<(usize, [End; 2])> = open.map(|i| (i, ends(&chains[i], pixels))).collect();
@@ -129,7 +131,7 @@ fn pairs(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<(f64, usiz
     pairs
 }
 
-/// How well a chain goes on, in pixels; none where it does not.
+/// The cost of the continuation of a chain, in pixels; none where they do not continue each other.
 fn cost(tail: &End, head: &End, gap: f64) -> Option<f64> {
     let step = [head.at[0] - tail.at[0], head.at[1] - tail.at[1]];
     let distance = step[0].hypot(step[1]);
@@ -141,7 +143,7 @@ fn cost(tail: &End, head: &End, gap: f64) -> Option<f64> {
     (reached && on).then_some(distance + (1.0 - agreement))
 }
 
-/// A chain with all that follow it.
+/// A chain joined with all that follow it.
 fn concatenate(
     start: usize,
     chains: &[EdgeChain],

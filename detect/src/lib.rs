@@ -5,8 +5,8 @@
 //! 1986), linking of pixels to [chains](EdgeChain) (ch. 11), splitting of chains at corners (Ramer
 //! 1972), and [fits](fit) of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
 //!
-//! No step looks at a pixel outside the [`PixelMask`], so that an image of which little is known gives
-//! the same edges as the whole one wherever [`Detector::radius`] pixels about them are known.
+//! No step uses a pixel outside the [`PixelMask`]. So an image of which little is known gives the
+//! same edges as the whole one wherever [`Detector::radius`] pixels around them are known.
 
 mod corners;
 mod detection;

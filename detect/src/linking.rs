@@ -1,11 +1,11 @@
-//! Linking of edge pixels to chains, from end to end, from branch to branch and around (Haralick &
+//! Linking of edge pixels to chains, between ends and branches and around closed curves (Haralick &
 //! Shapiro ch. 11).
 
 use super::detection::{EdgeChain, EdgePixel};
 use super::gradient::Gradient;
 use super::workspace::{Workspace, neighbours};
 
-/// Shorter branches than this, in pixels, are spurs: thinning leaves them, no edge.
+/// Branches shorter than this, in pixels, are spurs: artefacts of thinning.
 const SPUR: usize = 2;
 
 /// The neighbours along edges of one pixel.
@@ -21,13 +21,13 @@ impl Near {
     }
 }
 
-/// Which edge pixels follow one another.
+/// The adjacency of edge pixels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Links {
     near: Vec<Near>,
 }
 
-/// Links the pixels found, and takes spurs away from them.
+/// Links the found pixels and removes spurs.
 pub(super) fn link(work: &mut Workspace) -> Links {
     let links = Links::new(work);
     let spurs = links.spurs();
@@ -43,7 +43,7 @@ pub(super) fn link(work: &mut Workspace) -> Links {
 }
 
 impl Links {
-    /// Marks each pixel with its number from one, and collects its neighbours.
+    /// Marks each pixel with its index plus one, and collects its neighbours.
     fn new(work: &mut Workspace) -> Self {
         for (number, &place) in work.found.iter().enumerate() {
             work.marks[place as usize] = number as u32 + 1;
@@ -100,7 +100,7 @@ impl Links {
             }
             for &next in self.near[node as usize].list() {
                 let inner = self.count(next) == 2;
-                // Two nodes side by side are linked from the first of them.
+                // Two adjacent nodes are linked from the first of them.
                 if if inner {
                     !taken[next as usize]
                 } else {
@@ -145,7 +145,7 @@ impl Links {
     }
 }
 
-/// The marked neighbours of a place with a gradient to the same side. A diagonal one is left out
+/// The marked neighbours of a pixel with a gradient to the same side. A diagonal one is left out
 /// where another lies between.
 fn near(place: u32, gradient: &Gradient, marks: &[u32]) -> Near {
     let around = neighbours(place, gradient.width);
@@ -166,7 +166,7 @@ fn near(place: u32, gradient: &Gradient, marks: &[u32]) -> Near {
     near
 }
 
-/// Turns a chain so that the gradients point to its right.
+/// Orients a chain so that the gradients point to its right.
 fn orient(chain: &mut EdgeChain, pixels: &[EdgePixel]) {
     let mut side = 0.0;
     for pair in chain.pixels.windows(2) {

@@ -1,8 +1,8 @@
-//! Which pixels of an image are known.
+//! The known pixels of an image.
 
 use std::ops::Range;
 
-/// Which pixels of an image are known: for each row disjoint, increasing, half-open column ranges.
+/// The known pixels of an image: for each row disjoint, increasing, half-open column ranges.
 /// Neighbouring ranges of a row do not touch.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PixelMask {
@@ -10,12 +10,12 @@ pub struct PixelMask {
     height: usize,
     /// The ranges of all rows, one row after the other.
     ranges: Vec<Range<u32>>,
-    /// Where the ranges of a row begin, and at last how many there are.
+    /// By row: the index of its first range; at last the number of ranges.
     offsets: Vec<usize>,
 }
 
 impl PixelMask {
-    /// A domain of no rows yet.
+    /// A mask without rows.
     fn empty(width: usize) -> Self {
         Self {
             width,
@@ -31,8 +31,8 @@ impl PixelMask {
         Self::of_rows(width, (0..height).map(|_| vec![all.clone()]))
     }
 
-    /// The pixels that a mask of `width * height` values, row by row, names; what is missing of it
-    /// is unknown.
+    /// The pixels that are set in `width * height` values, row by row; missing values are unknown
+    /// pixels.
     pub fn of_mask(width: usize, height: usize, mask: &[bool]) -> Self {
         let mut domain = Self::empty(width);
         for y in 0..height {
@@ -50,8 +50,8 @@ impl PixelMask {
         domain
     }
 
-    /// The pixels in ranges of columns, given row by row, in any order; they may overlap, and what
-    /// is beyond the width is cut off.
+    /// The pixels in ranges of columns, given row by row, in any order; they may overlap, and
+    /// columns beyond the width are cut off.
     pub fn of_rows(width: usize, rows: impl Iterator<Item = Vec<Range<u32>>>) -> Self {
         let mut domain = Self::empty(width);
         let end = column(width);
@@ -88,7 +88,7 @@ impl PixelMask {
         self.height
     }
 
-    /// The known columns of a row; none where there is no such row.
+    /// The known columns of a row; empty where there is no such row.
     pub fn spans(&self, y: usize) -> &[Range<u32>] {
         if y < self.height {
             &self.ranges[self.offsets[y]..self.offsets[y + 1]]
@@ -104,7 +104,7 @@ impl PixelMask {
         spans.get(next).is_some_and(|r| r.start as usize <= x)
     }
 
-    /// How many pixels are known.
+    /// The number of known pixels.
     pub fn len(&self) -> usize {
         self.ranges.iter().map(|r| r.len()).sum()
     }
@@ -115,18 +115,19 @@ impl PixelMask {
     }
 
     /// The pixels whose whole square of 2 r + 1 pixels a side is known (erosion, Haralick & Shapiro
-    /// ch. 5); what is beyond the image is not known.
+    /// ch. 5); pixels beyond the image are not known.
     pub fn eroded(&self, radius: usize) -> Self {
         if radius == 0 {
             return self.clone();
         }
         let window = 2 * radius + 1;
         let mut rows = self.narrowed(radius);
-        // Windows of 1, 2, 4.. rows, and at last of all: each is met by two of the one before.
+        // Windows of 1, 2, 4 … rows, and at last of all: each is the intersection of two of the
+        // previous size.
         let mut have = 1;
         while have < window && rows.height > 0 {
             let step = have.min(window - have);
-            rows = rows.met_below(step);
+            rows = rows.intersected_below(step);
             have += step;
         }
         rows.moved_down(radius, self.height)
@@ -145,8 +146,8 @@ impl PixelMask {
         domain
     }
 
-    /// What each row has in common with the one `step` rows below; the last rows are left out.
-    fn met_below(&self, step: usize) -> Self {
+    /// The intersection of each row with the one `step` rows below; the last rows are left out.
+    fn intersected_below(&self, step: usize) -> Self {
         let mut domain = Self::empty(self.width);
         for y in 0..self.height.saturating_sub(step) {
             let (mut above, mut below) = (self.spans(y), self.spans(y + step));

@@ -1,4 +1,4 @@
-//! Lines and conics along chains: the pieces between splits, merged where one curve holds several
+//! Lines and conics along chains: the pieces between splits, merged where one curve fits several
 //! (Haralick & Shapiro ch. 11).
 
 use super::detection::{DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
@@ -8,20 +8,20 @@ use super::splitting::{outermost, split, split_closed};
 use super::walk::{Stretch, Walk};
 use std::ops::Range;
 
-/// A curve with a smaller root mean square distance than this, in pixels, is as good as any.
+/// A root mean square distance below this, in pixels, is as good as zero.
 const FINE: f64 = 3.0 / 16.0;
 
-/// How much larger the distances from one line may be than from those of its pieces.
+/// The factor by which the residual of one line may exceed that of its pieces.
 const LOOSER: f64 = 1.25;
 
-/// Pieces of so many pixels tell themselves how far edges are off their curves: where all of them are
-/// straight a curve has to be about as near, however near it is.
+/// Pieces of at least this many pixels determine the residual of edges themselves. Where all of
+/// them are straight, a merged curve must fit about as well, however small its residual is.
 const TELLING: usize = 24;
 
-/// As many points as tell an ellipse from a line with noise.
+/// The fewest points that distinguish an ellipse from a line with noise.
 const FEWEST: usize = 8;
 
-/// A long stretch is first tried on about this many of its points.
+/// The approximate number of points of a long run on which a fit is tried first.
 const SAMPLE: usize = 40;
 
 /// Fits segments to chains.
@@ -32,17 +32,17 @@ pub(super) struct Fitter<'a> {
     pub found: Vec<DetectedSegment>,
 }
 
-/// The pieces of a chain, with what is known of them.
+/// The pieces of a chain, with the residuals of their curves.
 struct Pieces<'a> {
     points: &'a [[f64; 2]],
-    /// Where each begins, and at last the end of the chain.
+    /// The index at which each begins; at last the end of the chain.
     breaks: Vec<usize>,
     /// The sum of squared distances of each from its curve.
     squares: Vec<f64>,
     /// Whether the curve of each is an ellipse.
     bent: Vec<bool>,
     tolerance: f64,
-    /// How many pixels next to a corner the mask may pull.
+    /// The number of pixels next to a corner that the mask may displace.
     blurred: usize,
 }
 
@@ -55,8 +55,8 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Finds the segments of chains, and gives the chains back: the closed ones start where a
-    /// segment does.
+    /// Finds the segments of chains, and returns the chains: the closed ones start where a segment
+    /// does.
     pub fn segments(&mut self, chains: Vec<EdgeChain>) -> Vec<EdgeChain> {
         let numbered = (0_u32..).zip(chains);
         let chains = numbered.map(|(number, chain)| self.chain(number, chain));
@@ -86,7 +86,7 @@ impl<'a> Fitter<'a> {
         walk.chain
     }
 
-    /// Makes the last and the first stretch of a closed chain one, if a curve holds both.
+    /// Merges the last and the first run of a closed chain, if one curve fits both.
     fn close(&self, walk: &mut Walk) {
         let last = match &walk.stretches[..] {
             [_, .., last] if walk.chain.closed => last.range.start,
@@ -94,7 +94,9 @@ impl<'a> Fitter<'a> {
         };
         walk.turn(last);
         let [back, front] = [0, 1].map(|i| walk.stretches[i].range.end);
-        let both = self.pieces(&walk.points, vec![0, back, front]).held(0..2);
+        let both = self
+            .pieces(&walk.points, vec![0, back, front])
+            .fitted_by_one(0..2);
         if let Some((bent, _)) = both {
             let range = 0..front;
             walk.stretches.splice(0..2, [Stretch { range, bent }]);
@@ -118,12 +120,12 @@ impl<'a> Fitter<'a> {
 
     fn segment(&self, chain: u32, walk: &Walk, stretch: &Stretch, whole: bool) -> DetectedSegment {
         let all = &walk.points[stretch.range.clone()];
-        // Beyond a corner the mask sees another edge, which pulls the pixels next to it.
+        // Beyond a corner the mask covers another edge, which displaces the pixels next to it.
         let outer = self.detector.radius().min(all.len() / 4);
         let inner = &all[outer..all.len() - outer];
         let fitted = if whole { all } else { inner };
         let straight = line(fitted).or_else(|| line(all));
-        // With other boundaries it can be a line after all.
+        // With other boundaries it may fit a line after all.
         let curved = whole || straight.is_none_or(|fit| fit.rms > FINE);
         let curve = (stretch.bent && curved).then(|| ellipse(fitted)).flatten();
         let fit = curve.map(Fit::Ellipse).or(straight.map(Fit::Line));
@@ -160,7 +162,7 @@ fn shape(fit: Option<Fit>, walk: &Walk, range: &Range<usize>, whole: bool) -> Se
 }
 
 /// The ends of a line that is split from its neighbours: the pixel beyond a split is as near to the
-/// corner as the last one before it, and is taken where it is farther out.
+/// corner as the last one before it, and is used where it is farther out.
 fn reaching(fit: &LineFit, ends: [[f64; 2]; 2], beyond: [Option<[f64; 2]>; 2]) -> [[f64; 2]; 2] {
     [0, 1].map(|i| {
         let outwards = [ends[1 - i], ends[i]];
@@ -173,7 +175,7 @@ fn reaching(fit: &LineFit, ends: [[f64; 2]; 2], beyond: [Option<[f64; 2]>; 2]) -
     })
 }
 
-/// The breaks of a closed chain, where it starts so many points later.
+/// The breaks of a closed chain after its start is moved by a number of points.
 fn turned(mut breaks: Vec<usize>, by: usize) -> Vec<usize> {
     let n = breaks.pop().unwrap_or_default();
     let at = breaks.iter().position(|&b| b == by).unwrap_or_default();
@@ -183,7 +185,7 @@ fn turned(mut breaks: Vec<usize>, by: usize) -> Vec<usize> {
     breaks
 }
 
-/// At which break a closed chain turns most between its chords.
+/// The index of the break with the greatest angle between the chords of a closed chain.
 fn sharpest(points: &[[f64; 2]], breaks: &[usize]) -> usize {
     let n = points.len();
     let m = breaks.len() - 1;
@@ -207,15 +209,17 @@ fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl Pieces<'_> {
-    /// The stretches of points, each of as many pieces as one curve holds. The neighbours that one
-    /// curve holds best become one first, so that a curve is whole before its ends are tried.
+    /// The runs of points, each of as many pieces as one curve fits. The neighbours that one curve
+    /// fits best are merged first, so that a curve is complete before its ends are tried.
     fn merged(mut self) -> Vec<Stretch> {
         let count = self.squares.len();
-        if let Some((bent, _)) = self.held(0..count).filter(|_| count > 1) {
+        if let Some((bent, _)) = self.fitted_by_one(0..count).filter(|_| count > 1) {
             let range = 0..self.points.len();
             return vec![Stretch { range, bent }];
         }
-        let mut pairs: Vec<_> = (1..count).map(|i| self.held(i - 1..i + 1)).collect();
+        let mut pairs: Vec<_> = (1..count)
+            .map(|i| self.fitted_by_one(i - 1..i + 1))
+            .collect();
         loop {
             let told = pairs.iter().enumerate();
             let told = told.filter_map(|(i, pair)| pair.map(|(bent, rms)| (i, bent, rms)));
@@ -230,7 +234,7 @@ impl Pieces<'_> {
             (self.squares[i], self.bent[i]) = (rms * rms * length as f64, kind);
             for k in [i.checked_sub(1), Some(i)].into_iter().flatten() {
                 if k < pairs.len() {
-                    pairs[k] = self.held(k..k + 2);
+                    pairs[k] = self.fitted_by_one(k..k + 2);
                 }
             }
         }
@@ -241,9 +245,9 @@ impl Pieces<'_> {
             .collect()
     }
 
-    /// Whether the curve that holds the points of pieces about as well as their own do is an
-    /// ellipse, or a line, and its distances in the root mean square; none where neither does.
-    fn held(&self, pieces: Range<usize>) -> Option<(bool, f64)> {
+    /// Whether the curve that fits the points of pieces about as well as their own curves is an
+    /// ellipse, or a line, with its root mean square distance; none where neither fits.
+    fn fitted_by_one(&self, pieces: Range<usize>) -> Option<(bool, f64)> {
         let range = self.breaks[pieces.start]..self.breaks[pieces.end];
         let squares: f64 = self.squares[pieces.clone()].iter().sum();
         let rms = (squares / range.len() as f64).sqrt();
@@ -253,12 +257,12 @@ impl Pieces<'_> {
             let outer = self.outer(points);
             let inner = outer..points.len() - outer;
             let distances = points.iter().map(|&p| fit.distance(p)).enumerate();
-            // Where a corner may bend the ends, they may be farther away.
+            // Where a corner may displace the ends, they may be farther away.
             let mut distances =
                 distances.map(|(i, d)| if inner.contains(&i) { d } else { 0.5 * d });
             return distances.all(near).then_some((false, fit.rms));
         }
-        let limit = if self.tell(pieces.clone()) {
+        let limit = if self.determine_residual(pieces.clone()) {
             LOOSER * rms
         } else {
             rms.max(FINE)
@@ -278,24 +282,25 @@ impl Pieces<'_> {
         (all && runs_along(points, fit.centre)).then_some((true, fit.rms))
     }
 
-    /// Whether all of some pieces are straight and long enough to tell how far edges are off lines.
-    fn tell(&self, mut pieces: Range<usize>) -> bool {
+    /// Whether all of some pieces are straight and long enough to determine the residual of edges
+    /// from lines.
+    fn determine_residual(&self, mut pieces: Range<usize>) -> bool {
         let length = |k: usize| self.breaks[k + 1] - self.breaks[k];
         pieces.all(|k| !self.bent[k] && length(k) >= TELLING)
     }
 
-    /// How many points at each end of a stretch a corner may bend.
+    /// The number of points at each end of a run that a corner may displace.
     fn outer(&self, points: &[[f64; 2]]) -> usize {
         self.blurred.min(points.len() / 4)
     }
 
-    /// The line of points, if it holds all but those at the ends, which a corner may bend.
+    /// The line of points, if it fits all except those at the ends that a corner may displace.
     fn straight(&self, points: &[[f64; 2]], limit: f64) -> Option<LineFit> {
         let outer = self.outer(points);
         line(&points[outer..points.len() - outer]).filter(|fit| fit.rms <= limit)
     }
 
-    /// Whether the chords of pieces turn to one side only.
+    /// Whether the chords of pieces all turn to the same side.
     fn turns_one_way(&self, pieces: Range<usize>) -> bool {
         let n = self.points.len();
         let chord = |i: usize| {
@@ -308,7 +313,7 @@ impl Pieces<'_> {
     }
 }
 
-/// Whether points run about a centre one way, seen at a few of them.
+/// Whether points go around a centre in one direction, tested at a few of them.
 fn runs_along(points: &[[f64; 2]], centre: [f64; 2]) -> bool {
     let step = (points.len() / 8).max(1);
     let arms = points.iter().step_by(step);

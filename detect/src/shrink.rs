@@ -1,12 +1,12 @@
-//! The connected shrink operator (Haralick & Shapiro ch. 6): border pixels are taken away as long
-//! as what is connected stays connected.
+//! The connected shrink operator (Haralick & Shapiro ch. 6): border pixels are removed as long as
+//! connected pixels stay connected.
 
 use super::detector::Thinning;
 use super::gradient::{Gradient, ROUNDING};
 use super::workspace::{Workspace, neighbours};
 
-/// By which neighbours there are, whether a pixel can be taken away: Yokoi's connectivity number
-/// for 8-neighbours is one, so that they stay connected, and it is not the end of a line.
+/// By the set of neighbours: whether a pixel can be removed. Yokoi's connectivity number for
+/// 8-neighbours is one, so that they stay connected, and the pixel is not the end of a line.
 const REMOVABLE: [bool; 256] = {
     let mut table = [false; 256];
     let mut ring = 0;
@@ -32,8 +32,8 @@ const fn yokoi(ring: usize) -> usize {
     number
 }
 
-/// Makes the marked pixels one pixel thick. After non-maximum suppression only what is more than one
-/// thick is looked at.
+/// Makes the marked pixels one pixel thick. After non-maximum suppression only pixels in thicker
+/// places are processed.
 pub(super) fn shrink(thinning: Thinning, work: &mut Workspace) {
     let (gradient, marks, queue) = (&work.gradient, &mut work.marks, &mut work.queue);
     let every = thinning == Thinning::Shrink;
@@ -45,7 +45,7 @@ pub(super) fn shrink(thinning: Thinning, work: &mut Workspace) {
         a.total_cmp(&b).then(p.cmp(&q))
     });
     let before = queue.len();
-    // First towards what is stronger, and then what is thick yet.
+    // First towards stronger pixels, and then wherever it is still thick.
     for uphill in [true, false] {
         while peel(gradient, marks, queue, uphill) {}
     }
@@ -55,10 +55,9 @@ pub(super) fn shrink(thinning: Thinning, work: &mut Workspace) {
     queue.clear();
 }
 
-/// Takes one layer away on each side in turn, so that thick lines are not eaten from their ends: the
-/// weakest pixels first. Uphill only across the edge, and what is not stronger than the next one
-/// inwards.
-/// Whether there were any.
+/// Removes one layer on each side in turn, the weakest pixels first, so that thick lines are not
+/// shortened from their ends. Uphill only across the edge, and only pixels that are not stronger
+/// than the next one inwards. Returns whether there were any.
 fn peel(gradient: &Gradient, marks: &mut [u32], queue: &mut Vec<u32>, uphill: bool) -> bool {
     let before = queue.len();
     let size = |place: u32| gradient.size[place as usize];
@@ -104,7 +103,7 @@ mod tests {
 
     #[test]
     fn yokoi_numbers() {
-        // None about it, or all: not on a border that can go.
+        // Without neighbours, or with all: not on a removable border.
         assert_eq!((yokoi(0), yokoi(255)), (0, 0));
         assert_eq!(yokoi(0b0000_0001), 1);
         assert_eq!(yokoi(0b0001_0001), 2);

@@ -1,7 +1,7 @@
 //! Splitting of chains where they leave their chords (Ramer 1972; Haralick & Shapiro ch. 11).
 
-/// Where the pieces of an open chain begin, and at last where it ends: each piece is nowhere
-/// farther from its chord than the tolerance.
+/// The indices at which the pieces of an open chain begin, and at last its end: no point of a piece
+/// is farther from its chord than the tolerance.
 pub(super) fn split(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     let Some(last) = points.len().checked_sub(1) else {
         return Vec::new();
@@ -12,8 +12,8 @@ pub(super) fn split(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     breaks
 }
 
-/// The same for a closed chain, of which the first point is one to start with; the last piece ends
-/// at the first point.
+/// The breaks of a closed chain whose first point is a start; the last piece ends at the first
+/// point.
 pub(super) fn split_closed(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     let n = points.len();
     let mut around = points.to_vec();
@@ -37,9 +37,9 @@ pub(super) fn outermost(points: &[[f64; 2]]) -> usize {
     farthest(points.iter().map(|&p| distance(p, middle))).map_or(0, |(i, _)| i)
 }
 
-/// Adds where the stretch between two points, which are of it, is split.
+/// Adds the indices at which the range between two points, inclusive, is split.
 fn divide(points: &[[f64; 2]], stretch: [usize; 2], tolerance: f64, breaks: &mut Vec<usize>) {
-    // The stretches still to do, the first one on top.
+    // The ranges still to do, the first one on top.
     let mut left = vec![stretch];
     while let Some([from, to]) = left.pop() {
         let chord = [points[from], points[to]];
@@ -72,7 +72,7 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
-/// How far a point is from a chord, which does not go on beyond its ends.
+/// The distance of a point from a chord, as a segment.
 fn from_chord(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
     let [x, y] = [p[0] - a[0], p[1] - a[1]];

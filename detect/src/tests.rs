@@ -26,7 +26,7 @@ fn detect(detector: &Detector, grey: &Grey) -> Detection {
     found
 }
 
-/// What holds of every detection.
+/// Checks the invariants of every detection.
 fn check(found: &Detection) {
     for chain in &found.chains {
         assert!(chain.pixels.len() > 1);
@@ -54,7 +54,7 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
-/// A square about a middle, turned.
+/// A rotated square about a centre.
 fn square(middle: [f64; 2], half: f64, turn: f64) -> impl Fn(f64, f64) -> bool {
     let (sin, cos) = turn.sin_cos();
     move |x, y| {
@@ -77,7 +77,7 @@ const MASKS: [Mask; 4] = [
     Mask::Gaussian { sigma: 1.0 },
 ];
 
-/// A parabola through what two pixels leave of an edge without any blur is not exact.
+/// The allowed error: a parabola through two pixels of an edge without blur is not exact.
 fn exactness(mask: Mask, allowed: f64) -> f64 {
     if mask == Mask::Roberts {
         allowed.max(0.2)
@@ -213,8 +213,8 @@ fn a_half_circle_is_an_arc() {
     }
 }
 
-/// Two edges that meet at an angle of so many degrees, 300 and 45 pixels long, with some noise; where
-/// the picture ends no edge is found.
+/// Two edges at an angle in degrees, 300 and 45 pixels long, with some noise; at the border of the
+/// image no edge is found.
 fn bend(degrees: f64) -> Grey {
     let slope = degrees.to_radians().tan();
     let mut grey = draw(80, 350, |x, y| {
@@ -248,7 +248,7 @@ fn a_slight_bend_is_a_corner_and_no_arc() {
     }
 }
 
-/// An arc that bends as little on a way as long is one all the same.
+/// An arc with as little curvature over the same length is still found as one.
 #[test]
 fn a_flat_arc_is_an_arc() {
     for radius in [400.0, 1500.0, 3000.0] {
@@ -329,7 +329,7 @@ fn gaps_are_joined_up_to_a_width() {
     assert_eq!(chains(3.0, &|x, _| x != 40), 2);
     assert_eq!(chains(6.5, &|x, _| x != 40), 1);
     assert_eq!(chains(6.5, &|x, _| !(40..43).contains(&x)), 2);
-    // An edge that turns away is not gone over.
+    // A gap is not bridged where the edge turns.
     let found = detect(
         &Detector {
             gap: 8.0,
@@ -356,7 +356,7 @@ fn a_band_shows_what_the_whole_shows() {
             ..Detector::default()
         };
         let whole = detect(&detector, &grey);
-        // Where the shrinking has its edges the thick ones have to be known.
+        // The thick edges must be known where shrinking processes them.
         let reach = 2 * detector.radius() as i32 + 2;
         let mut known = vec![false; 130 * 120];
         for p in &whole.pixels {
@@ -367,7 +367,7 @@ fn a_band_shows_what_the_whole_shows() {
                 }
             }
         }
-        // What is unknown may be anything.
+        // Unknown pixels may have any value.
         let mut spoilt = grey.clone();
         for (level, known) in spoilt.levels.iter_mut().zip(&known) {
             *level = if *known { *level } else { f32::NAN };

@@ -1,4 +1,4 @@
-//! Which pixels are edges: thresholds, non-maximum suppression and hysteresis (Canny 1986).
+//! Selection of edge pixels: thresholds, non-maximum suppression and hysteresis (Canny 1986).
 
 use super::detection::EdgePixel;
 use super::detector::{Detector, Thinning};
@@ -6,8 +6,8 @@ use super::gradient::{Gradient, ROUNDING, runs};
 use super::pixel_mask::PixelMask;
 use super::workspace::{Workspace, neighbours};
 
-/// Finds the pixels that are strong enough, and of those, but where the edges shrink, the ones
-/// where the gradient is largest across the edge. They are marked.
+/// Marks the pixels that are strong enough, and of those, unless the edges shrink, the ones where
+/// the gradient is largest across the edge.
 pub(super) fn pick(detector: &Detector, work: &mut Workspace, inner: &PixelMask) {
     let least = detector.low.unwrap_or(detector.threshold) as f32;
     let gradient = &work.gradient;
@@ -24,7 +24,7 @@ pub(super) fn pick(detector: &Detector, work: &mut Workspace, inner: &PixelMask)
     }
 }
 
-/// Drops the weak pixels that no neighbours join to a strong one.
+/// Drops the weak pixels that are not connected to a strong one.
 pub(super) fn connect(detector: &Detector, work: &mut Workspace) {
     if detector.low.is_none() {
         return;
@@ -52,7 +52,7 @@ pub(super) fn connect(detector: &Detector, work: &mut Workspace) {
     });
 }
 
-/// The found pixels with their positions between pixels.
+/// The found pixels with their sub-pixel positions.
 pub(super) fn edge_pixels(detector: &Detector, work: &Workspace) -> Vec<EdgePixel> {
     let (gradient, width) = (&work.gradient, work.gradient.width);
     let centre = detector.mask.centre();
@@ -71,8 +71,8 @@ pub(super) fn edge_pixels(detector: &Detector, work: &Workspace) -> Vec<EdgePixe
 }
 
 impl Gradient {
-    /// Whether the magnitude is largest across the edge, against the values on both sides where the
-    /// gradient leaves the ring of neighbours.
+    /// Whether the magnitude is the largest across the edge, compared with the values on both sides
+    /// where the gradient leaves the ring of neighbours.
     fn is_largest(&self, i: usize) -> bool {
         let (gx, gy) = (self.x[i], self.y[i]);
         let steep = gy.abs() > gx.abs();
@@ -104,8 +104,8 @@ impl Gradient {
         top >= before && top >= after && bottom > before.min(after)
     }
 
-    /// Where the magnitude is largest across the edge, relative to the pixel: the top of a
-    /// parabola along the image axis to which the gradient is nearer. There no value has to be
+    /// The position of the largest magnitude across the edge, relative to the pixel: the maximum of
+    /// a parabola along the image axis nearer to the gradient. There no value has to be
     /// interpolated, and a straight edge has the same profile in each row or column.
     fn top(&self, i: usize) -> [f64; 2] {
         let steep = self.y[i].abs() > self.x[i].abs();
@@ -113,7 +113,7 @@ impl Gradient {
         let [before, here, after] = [i - step, i, i + step].map(|at| f64::from(self.size[at]));
         let bend = before - 2.0 * here + after;
         let flat = bend >= -f64::from(ROUNDING) * here;
-        // No maximum between the neighbours: the edge is near one of them at most.
+        // There is no maximum between the neighbours: the edge is at most near one of them.
         let offset = if flat {
             0.0
         } else {

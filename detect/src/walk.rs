@@ -1,23 +1,23 @@
-//! Chains with the stretches that curves hold, and where their boundaries are.
+//! Chains with their runs of points, each fitted by one curve, and the boundaries between runs.
 
 use super::detection::{EdgeChain, EdgePixel};
 use super::fit::{Fit, ellipse, line};
 use std::ops::Range;
 
-/// Points of a chain that one curve holds.
+/// A run of points of a chain that one curve fits.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
     pub range: Range<usize>,
-    /// Whether that is an ellipse.
+    /// Whether the curve is an ellipse.
     pub bent: bool,
 }
 
-/// A chain with its points and stretches.
+/// A chain with its points and runs.
 pub(super) struct Walk {
     pub chain: EdgeChain,
-    /// Where its pixels are.
+    /// The positions of its pixels.
     pub points: Vec<[f64; 2]>,
-    /// One after the other, from the first point to the last.
+    /// The consecutive runs, from the first point to the last.
     pub stretches: Vec<Stretch>,
 }
 
@@ -31,7 +31,7 @@ impl Walk {
         }
     }
 
-    /// Lets a closed chain start at a later point; if there are stretches, where one starts.
+    /// Moves the start of a closed chain to a later point; if there are runs, to the start of one.
     pub fn turn(&mut self, by: usize) {
         let n = self.points.len();
         self.chain.pixels.rotate_left(by);
@@ -43,7 +43,7 @@ impl Walk {
         self.stretches.sort_unstable_by_key(|s| s.range.start);
     }
 
-    /// The points next to a range, before and after, of the chain.
+    /// The points of the chain before and after a range.
     pub fn beyond(&self, range: &Range<usize>) -> [Option<[f64; 2]>; 2] {
         let closed = self.chain.closed;
         let last = self.points.last().copied().filter(|_| closed);
@@ -53,8 +53,8 @@ impl Walk {
         [before.or(last), after.or(first)]
     }
 
-    /// Divides stretches that are short between long ones, and puts the boundaries where the curves
-    /// tell; these can make others short.
+    /// Divides short runs between their longer neighbours, and moves the boundaries to where the
+    /// curves fit best; this can make other runs short.
     pub fn tidy(&mut self, short: usize) {
         loop {
             self.refine();
@@ -71,7 +71,7 @@ impl Walk {
         }
     }
 
-    /// Divides short stretches between their neighbours, but for the first and the last.
+    /// Divides short runs between their neighbours, except for the first and the last.
     fn absorb(&mut self, short: usize) {
         let mut i = 1;
         while i + 1 < self.stretches.len() {
@@ -87,7 +87,7 @@ impl Walk {
         }
     }
 
-    /// Puts the boundaries between stretches where the curves tell.
+    /// Moves the boundaries between runs to where the curves fit best.
     fn refine(&mut self) {
         refine(&self.points, &mut self.stretches);
         if self.chain.closed && self.stretches.len() > 1 {
@@ -98,7 +98,7 @@ impl Walk {
         }
     }
 
-    /// Divides the last stretch of a closed chain between its neighbours, if it is short.
+    /// Divides the last run of a closed chain between its neighbours, if it is short.
     fn absorb_last(&mut self, short: usize) {
         let [first, .., before, last] = &self.stretches[..] else {
             return;
@@ -116,7 +116,7 @@ impl Walk {
     }
 }
 
-/// Whether a stretch is so short that it is but the rounding of a corner by the mask between its
+/// Whether a run is so short that it is only the rounding of a corner by the mask between its
 /// longer neighbours.
 fn is_between(
     before: &Range<usize>,
@@ -127,8 +127,8 @@ fn is_between(
     here.len() <= short && before.len().min(after.len()) > 2 * here.len()
 }
 
-/// Moves the boundaries between stretches to where the sum of squared distances is least, of the
-/// points before from the one curve and of those after from the other.
+/// Moves the boundaries between runs to the least sum of squared distances, of the points before
+/// from the one curve and of those after from the other.
 fn refine(points: &[[f64; 2]], stretches: &mut [Stretch]) {
     let fits: Vec<Option<Fit>> = stretches.iter().map(|s| core(points, s)).collect();
     for i in 1..stretches.len() {
@@ -138,7 +138,7 @@ fn refine(points: &[[f64; 2]], stretches: &mut [Stretch]) {
         let [a, b] = [i - 1, i].map(|k| stretches[k].range.clone());
         let from = b.start - a.len() / 2;
         let to = b.start + b.len() / 2;
-        // The sum but for a constant, as the boundary passes the points one by one.
+        // The sum up to a constant, as the boundary passes the points one by one.
         let (mut sum, mut least, mut best) = (0.0, 0.0, from);
         for (k, &p) in (from..to).zip(&points[from..to]) {
             sum += before.distance(p).powi(2) - after.distance(p).powi(2);
@@ -151,7 +151,7 @@ fn refine(points: &[[f64; 2]], stretches: &mut [Stretch]) {
     }
 }
 
-/// The curve of a stretch without what may belong to its neighbours.
+/// The curve of a run without the points that may belong to its neighbours.
 fn core(points: &[[f64; 2]], stretch: &Stretch) -> Option<Fit> {
     let all = &points[stretch.range.clone()];
     let outer = all.len() / 4;

@@ -1,24 +1,23 @@
-//! Memory that detections share.
+//! Memory that detections reuse.
 
 use super::gradient::Gradient;
 
-/// Memory that one detection leaves to the next, so that none of the image's size is made anew. It
-/// holds nothing that the next result depends on.
+/// Memory that one detection leaves to the next, so that none of the image's size is allocated
+/// again. The next result does not depend on its content.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    /// The gradient where it is known; elsewhere what was left there.
+    /// The gradient where it is known; elsewhere old values.
     pub(super) gradient: Gradient,
-    /// By pixel of the image: zero, or what a step notes of an edge pixel. All zero between
-    /// detections.
+    /// By pixel of the image: zero, or the mark of an edge pixel. All are zero between detections.
     pub(super) marks: Vec<u32>,
-    /// The edge pixels by their place in the image, row by row.
+    /// The edge pixels by their index in the image, row by row.
     pub(super) found: Vec<u32>,
-    /// Pixels to be looked at.
+    /// Pixels to be processed.
     pub(super) queue: Vec<u32>,
 }
 
 impl Workspace {
-    /// A workspace; it takes the size of the images that it is used on.
+    /// An empty workspace; it grows to the size of the images that it is used on.
     pub fn new() -> Self {
         Self::default()
     }
@@ -30,7 +29,7 @@ impl Workspace {
         self.queue.clear();
     }
 
-    /// Takes what is found out of the marks.
+    /// Clears the marks of the found pixels.
     pub(super) fn clear(&mut self) {
         for &place in &self.found {
             self.marks[place as usize] = 0;
@@ -39,7 +38,8 @@ impl Workspace {
     }
 }
 
-/// The eight neighbours of a place in an image, in turn; those with even index share a side.
+/// The eight neighbours of a pixel in an image, in cyclic order; those with even index share a
+/// side.
 pub(super) fn neighbours(place: u32, width: usize) -> [u32; 8] {
     // Edge pixels lie two pixels or more within the image, so that none of these is outside.
     let (p, w) = (place, width as u32);

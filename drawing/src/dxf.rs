@@ -1,8 +1,8 @@
 //! Drawings as DXF, release 2000, in text: LINE, CIRCLE, ARC, ELLIPSE and LWPOLYLINE, one layer
 //! for each kind and visibility, with its line weight.
 //!
-//! On a sheet the part has its true size, in its own unit, and paper, frame and title block are as much
-//! larger as the scale makes it smaller.
+//! On a sheet the part has its true size, in its own unit. Paper, frame and title block are scaled
+//! up by the inverse of the scale.
 
 use super::sheet::{Sheet, SheetMark, Weight};
 use super::{Drawing, Layer, Stroke, StrokeShape};
@@ -12,10 +12,10 @@ use premio_text::escape;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// An ellipse as round as this is a circle.
+/// The relative difference of half axes below which an ellipse is written as a circle.
 const ROUND: f64 = premio_kernel::number::predicates::ROUNDING * 1024.0;
 
-/// Writes groups: a code and its value, a line each.
+/// The writer of groups: a code and its value, on a line each.
 struct Groups {
     text: String,
     next: u32,
@@ -27,7 +27,7 @@ impl Groups {
     }
 
     fn number(&mut self, code: u32, value: f64) {
-        // The format wants a decimal point.
+        // The format requires a decimal point.
         let value = if value == 0.0 { 0.0 } else { value };
         let _ = write!(self.text, "{code:3}\n{value:?}\n");
     }
@@ -84,7 +84,7 @@ fn layer_name(layer: Layer, visible: bool) -> String {
     format!("{}_{seen}", layer.name().to_uppercase())
 }
 
-/// How image units become those of the document.
+/// The map from image units to those of the document.
 #[derive(Clone, Copy)]
 struct Placing {
     scale: f64,
@@ -101,7 +101,7 @@ impl Placing {
 pub fn write(drawing: &Drawing) -> String {
     let [lo, hi] = drawing.extent;
     let head = Head {
-        // Millimetres where the image is in the part's unit, else none.
+        // Millimetres where the image is in the part's unit; otherwise none.
         units: if drawing.to_scale { 4 } else { 0 },
         extent: [lo, hi],
         // Dashes that fit the drawing, whatever its size.
@@ -160,14 +160,14 @@ fn code(unit: Unit) -> u32 {
     }
 }
 
-/// What differs between the heads of documents.
+/// The parameters of a document's head.
 struct Head {
     units: u32,
     extent: [Point2<f64>; 2],
     dashes: f64,
 }
 
-/// The layers of a sheet's frame and of what else is in its title block, with their line weights in
+/// The layers of a sheet's frame and of the rest of its title block, with their line weights in
 /// hundredths of a millimetre.
 const FRAME: (&str, u32) = ("FRAME", 70);
 const TITLE: (&str, u32) = ("TITLE", 25);
@@ -218,7 +218,7 @@ fn header(g: &mut Groups, head: &Head) {
     g.put(0, "ENDSEC");
 }
 
-/// Writes the tables; gives the records of the model's and the paper's space.
+/// Writes the tables; returns the records of the model space and the paper space.
 fn tables(g: &mut Groups, more: &[(&str, u32)]) -> [u32; 2] {
     g.section("TABLES");
     g.table("VPORT", 0);
@@ -288,8 +288,8 @@ fn line_type(g: &mut Groups, table: u32, name: &str, dashes: &[f64]) {
     }
 }
 
-/// The line weight of what is seen, in hundredths of a millimetre; what is not seen, and smooth
-/// boundaries, have half of it (ISO 128).
+/// The line weight of visible lines, in hundredths of a millimetre; hidden lines and smooth
+/// boundaries have half of it (ISO 128).
 const SEEN: u32 = 50;
 
 fn layer(g: &mut Groups, table: u32, name: &str, visible: bool, weight: u32) {
@@ -324,7 +324,7 @@ fn start(g: &mut Groups, name: &str, class: &str, layer: &str, owner: u32) {
     g.put(100, class);
 }
 
-/// A part of a sheet's frame or title block; `paper` is how long a millimetre on paper is.
+/// Writes a part of a sheet's frame or title block; `paper` is the length of a millimetre on paper.
 fn furniture(g: &mut Groups, mark: &SheetMark, paper: f64, owner: u32) {
     match mark {
         SheetMark::Line([a, b], weight) => {

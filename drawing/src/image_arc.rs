@@ -6,7 +6,8 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-/// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major one.
+/// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageEllipse {
     /// The centre.
@@ -21,10 +22,10 @@ impl ImageEllipse {
     /// The image of the unit circle (cos t, sin t, 1) under a map to homogeneous coordinates; none
     /// where that is another conic.
     ///
-    /// Notation: m1, m2, m3 are the columns of the map. C* = m1 m1ᵀ + m2 m2ᵀ - m3 m3ᵀ is the conic of
-    /// the tangents; its last column is the centre, and about the centre its first four elements over
-    /// the last one are the sum of the squares of the half axes. Unlike the coefficients of the points
-    /// it keeps its digits where the ellipse is thin.
+    /// Notation: m1, m2, m3 are the columns of the map. C* = m1 m1ᵀ + m2 m2ᵀ - m3 m3ᵀ is the dual
+    /// conic. Its last column is the centre. About the centre, its first four elements over the
+    /// last one are the sum of the outer squares of the half axes. Unlike the coefficients of the
+    /// point conic, it keeps its digits where the ellipse is thin.
     pub fn from_map(map: &Matrix3<f64>) -> Option<Self> {
         let tangents = |m: &Matrix3<f64>| {
             let product = |i: usize| m.column(i) * m.column(i).transpose();
@@ -102,7 +103,7 @@ impl ImageEllipse {
         q.y.atan2(q.x)
     }
 
-    /// How far a point is from the ellipse, to first order.
+    /// The distance of a point from the ellipse, to first order.
     pub fn distance(&self, p: &Point2<f64>) -> f64 {
         let q = self.coordinates(p);
         let (long, short) = (self.major.norm(), self.major.norm() * self.ratio);
@@ -136,7 +137,7 @@ pub enum ImageArc<'c> {
     Projected {
         /// The image of a parameter.
         curve: Rc<dyn Fn(f64) -> Point2<f64> + 'c>,
-        /// Points along it, so that the polyline of them is within the drawing's distance.
+        /// Points along it, whose polyline is within the drawing's distance.
         samples: Vec<Sample>,
     },
 }
@@ -146,7 +147,7 @@ pub enum ImageArc<'c> {
 pub struct Nearest {
     /// Its parameter.
     pub t: f64,
-    /// How far away it is.
+    /// Its distance.
     pub distance: f64,
 }
 
@@ -179,7 +180,7 @@ impl ImageArc<'_> {
         match self {
             Self::Segment([a, b]) => (b - a).norm(),
             Self::Elliptic { ellipse, range } => {
-                // Ramanujan's approximation: it only says which arc is longer.
+                // Ramanujan's approximation: it only determines which arc is longer.
                 let (a, b) = (ellipse.major.norm(), ellipse.major.norm() * ellipse.ratio);
                 let around = 3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt();
                 0.5 * around * (range[1] - range[0])
@@ -191,7 +192,7 @@ impl ImageArc<'_> {
         }
     }
 
-    /// How far its points are from its start at the most, or about so far.
+    /// The approximate greatest distance of its points from its start.
     pub fn reach(&self) -> f64 {
         let [lo, hi] = self.range();
         let start = self.point(lo);
@@ -203,7 +204,8 @@ impl ImageArc<'_> {
         away.fold(0.0, f64::max)
     }
 
-    /// How far the polyline of a projected curve may be off it, by how much it turns between samples.
+    /// A bound of the distance between a projected curve and its polyline, from the angles between
+    /// samples.
     pub fn deviation(&self) -> f64 {
         let Self::Projected { samples, .. } = self else {
             return 0.0;
@@ -222,7 +224,8 @@ impl ImageArc<'_> {
         steps.fold(few, f64::max)
     }
 
-    /// The lower left and the upper right corner of a box that holds the arc's polyline or ellipse.
+    /// The lower left and the upper right corner of a box that contains the arc's polyline or
+    /// ellipse.
     pub fn bounds(&self) -> [Point2<f64>; 2] {
         match self {
             Self::Segment([a, b]) => [a.inf(b), a.sup(b)],
@@ -276,7 +279,7 @@ impl ImageArc<'_> {
         }
     }
 
-    /// Over the nearest side of the polyline and those next to it.
+    /// Searches the nearest side of the polyline and the adjacent ones.
     fn nearest_projected(&self, samples: &[Sample], p: &Point2<f64>) -> Nearest {
         let sides = samples.len() - 1;
         let away = |i: &usize| side_distance(p, &samples[*i], &samples[i + 1]);
@@ -313,7 +316,8 @@ impl ImageArc<'_> {
         nearest.unwrap_or(ends[0])
     }
 
-    /// How far a point is from the arc's polyline, or from the arc where it is a segment or elliptic.
+    /// The distance of a point from the arc's polyline, or from the arc where it is a segment or
+    /// elliptic.
     pub fn approximate_distance(&self, p: &Point2<f64>) -> f64 {
         let Self::Projected { samples, .. } = self else {
             return self.nearest(p).distance;
@@ -363,7 +367,7 @@ impl ImageArc<'_> {
     }
 }
 
-/// How far a point is from the side of a polyline between two samples.
+/// The distance of a point from the side of a polyline between two samples.
 fn side_distance(p: &Point2<f64>, a: &Sample, b: &Sample) -> f64 {
     let d = b.point - a.point;
     let square = d.norm_squared();
@@ -374,7 +378,8 @@ fn side_distance(p: &Point2<f64>, a: &Sample, b: &Sample) -> f64 {
     (a.point + d * t.clamp(0.0, 1.0) - p).norm()
 }
 
-/// Each narrows the bracket by 0.618: after so many it is as narrow as f64 values tell a minimum.
+/// The number of golden-section steps: each narrows the bracket by 0.618, and after this many it is
+/// as narrow as f64 can resolve a minimum.
 const GOLDEN_STEPS: u32 = 44;
 
 #[cfg(test)]
@@ -401,7 +406,7 @@ mod tests {
         assert!(ImageEllipse::from_coefficients(&[1.0, 0.0, -1.0, 0.0, 0.0, -1.0]).is_none());
     }
 
-    /// A circle about (50, 40) that is seen so flat that its half axes are 2 and 2/1024.
+    /// A circle about (50, 40) seen so obliquely that its half axes are 2 and 2/1024.
     #[test]
     fn a_thin_ellipse_keeps_its_digits() {
         let (sin, cos) = 0.7f64.sin_cos();

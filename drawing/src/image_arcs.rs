@@ -1,4 +1,5 @@
-//! The image arcs of contours: runs of pieces of one visibility, cut where the image folds back.
+//! The image arcs of contours: runs of pieces with the same visibility, cut where the image folds
+//! back.
 
 use super::Layer;
 use super::image_arc::{ImageArc, ImageEllipse, Sample};
@@ -12,11 +13,11 @@ use premio_visibility::image_curve::{folds_of_conic, map_of_ellipse};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-/// An image arc with what it shows.
+/// An image arc with its layer and visibility.
 pub struct DrawnArc<'c> {
     /// Its form.
     pub arc: ImageArc<'c>,
-    /// What it shows.
+    /// Its layer.
     pub layer: Layer,
     /// Whether nothing hides it.
     pub visible: bool,
@@ -25,19 +26,20 @@ pub struct DrawnArc<'c> {
 /// An ellipse thinner than this is drawn as a polyline.
 const THIN: f64 = 1.0 / 4096.0;
 
-/// How much of the pieces before and after a junction determines whether the image folds there.
+/// The share of the pieces before and after a junction that determines whether the image folds
+/// there.
 const NEXT_TO: f64 = 1.0 / 64.0;
 
-/// How often an arc is halved at the most for its polyline.
+/// The most halvings of an arc for its polyline.
 const HALVINGS: u32 = 16;
 
-/// What image arcs are made with.
+/// The maker of image arcs.
 pub struct ArcMaker<'c> {
     /// The contours.
     pub contours: &'c Contours,
     /// The projection of their camera.
     pub projection: &'c Projection,
-    /// How far a polyline may be off its curve.
+    /// The greatest distance of a polyline from its curve.
     pub distance: f64,
 }
 
@@ -47,7 +49,7 @@ impl<'c> ArcMaker<'c> {
         self.projection.project_y_up(&contour.curve3.point(t))
     }
 
-    /// The image arcs of a contour. What is seen end-on has none.
+    /// The image arcs of a contour. A contour seen end-on has none.
     pub fn arcs(&self, contour: &'c Contour, out: &mut Vec<DrawnArc<'c>>) {
         let layer = Layer::from_contour(contour);
         for Run { range, visible } in self.runs(contour) {
@@ -72,7 +74,8 @@ impl<'c> ArcMaker<'c> {
         }
     }
 
-    /// Neighbouring pieces of one visibility taken together, unless the image folds back between them.
+    /// Runs of neighbouring pieces with the same visibility, unless the image folds back between
+    /// them.
     fn runs(&self, contour: &Contour) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         let mut before: Option<&ContourPiece> = None;
@@ -189,7 +192,7 @@ impl<'c> ArcMaker<'c> {
     ) {
         let chord = b.point - a.point;
         let square = chord.norm_squared();
-        // From the chord, not from its line: next to a cusp the image runs on and comes back.
+        // From the chord, not from its line: near a cusp the image overshoots and comes back.
         let deviation = |s: &Sample| {
             let d = s.point - a.point;
             let foot = match square > 0.0 {
@@ -200,7 +203,7 @@ impl<'c> ArcMaker<'c> {
         };
         let inner = [0.25, 0.5, 0.75].map(|part| sample(a.t + (b.t - a.t) * part));
         let worst = inner.iter().map(deviation).fold(0.0, f64::max);
-        // Half the distance: the largest deviation lies between the three places.
+        // Half the distance, because the largest deviation lies between the three points.
         if depth >= HALVINGS || (depth >= 1 && worst <= 0.5 * self.distance) {
             out.push(b);
             return;
@@ -211,7 +214,7 @@ impl<'c> ArcMaker<'c> {
     }
 }
 
-/// Pieces that are drawn as one.
+/// A run of pieces that are drawn as one.
 struct Run {
     range: [f64; 2],
     visible: bool,

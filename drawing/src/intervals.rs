@@ -23,7 +23,7 @@ impl Intervals {
         &self.0
     }
 
-    /// What is in these and in none of the others, in pieces longer than `gap`.
+    /// The difference of these and others, in pieces longer than `gap`.
     #[must_use]
     pub fn without(&self, others: &Self, gap: f64) -> Self {
         let mut left = Vec::with_capacity(self.0.len());

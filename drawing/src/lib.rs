@@ -1,8 +1,8 @@
 //! Line drawings of contours: lines, circles and ellipses as such, the rest as polylines within a
 //! stated distance.
 //!
-//! A drawing is kept in the camera's image units with y up; a camera with y down is turned over. It is
-//! a page of its own, or one of the views on a sheet.
+//! A drawing is in the camera's image units with y up; the image of a camera with y down is
+//! flipped. It is a page of its own, or one of the views on a sheet.
 
 pub mod dxf;
 mod image_arc;
@@ -33,7 +33,7 @@ impl Layer {
     /// All layers.
     pub const ALL: [Self; 3] = [Self::Boundary, Self::Limb, Self::Smooth];
 
-    /// What a contour is drawn as.
+    /// The layer of a contour.
     pub fn from_contour(contour: &Contour) -> Self {
         match (contour.kind, contour.smooth) {
             (ContourKind::Limb, _) => Self::Limb,
@@ -85,15 +85,15 @@ pub struct Stroke {
     pub visible: bool,
 }
 
-/// What is drawn, and how finely.
+/// Options of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawingOptions {
     /// Whether hidden lines are drawn too, dashed.
     pub hidden: bool,
-    /// Whether boundaries are drawn along which the normal does not jump.
+    /// Whether smooth edges are drawn.
     pub smooth: bool,
-    /// How far a polyline may be off its curve, in image units; none for a part of the drawing's
-    /// size.
+    /// The greatest distance of a polyline from its curve, in image units; none for a fixed share
+    /// of the drawing's size.
     pub distance: Option<f64>,
 }
 
@@ -107,10 +107,10 @@ impl Default for DrawingOptions {
     }
 }
 
-/// The default distance, as a part of the drawing's size.
+/// The default distance, relative to the drawing's size.
 const FINE: f64 = 1.0 / 10_000.0;
-/// Lines closer together than this part of the drawing's size are one: on a sheet they have the same
-/// digits.
+/// Lines are one if they are nearer to each other than this share of the drawing's size: on a sheet
+/// they have the same digits.
 const COINCIDENT: f64 = 1.0 / (1u32 << 22) as f64;
 
 /// A line drawing.
@@ -118,7 +118,7 @@ const COINCIDENT: f64 = 1.0 / (1u32 << 22) as f64;
 pub struct Drawing {
     /// The strokes, hidden ones first. No two share a stretch.
     pub strokes: Vec<Stroke>,
-    /// The lower left and upper right corner of what is drawn.
+    /// The lower left and upper right corner of the drawn lines.
     pub extent: [Point2<f64>; 2],
     /// The distance within which polylines follow their curves.
     pub distance: f64,
@@ -129,7 +129,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The drawing of contours: every line once, visible where any contour on it is.
+    /// The drawing of contours: every line is drawn once, and is visible where any contour on it
+    /// is.
     pub fn new(contours: &Contours, options: &DrawingOptions) -> Self {
         let projection = Projection::new(&contours.camera, 1.0);
         let mut maker = ArcMaker {
@@ -163,10 +164,10 @@ impl Drawing {
     }
 }
 
-/// At how many places a piece of a contour is looked at for the extent.
+/// The number of points of a piece of a contour that are used for the extent.
 const PLACES: u32 = 16;
 
-/// The places of contours at which their extent is measured.
+/// The points of contours from which their extent is computed.
 fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = (&'c Contour, f64)> {
     let of = |contour: &'c Contour| {
         let pieces = contour.pieces.iter();
@@ -230,5 +231,5 @@ impl StrokeShape {
     }
 }
 
-/// The steps of the rule that measures arcs of ellipses.
+/// The number of Simpson steps for the length of arcs of ellipses.
 const STEPS: u32 = 512;

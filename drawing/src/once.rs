@@ -1,9 +1,9 @@
-//! Every line once: what arcs cover in the image, without what is covered twice.
+//! Every line once: the parts of the image that arcs cover, without double coverage.
 //!
 //! Arcs are ranked: visible ones before hidden ones, and boundaries before limbs before smooth
-//! edges. On a supporting line or ellipse the arcs of one rank are united, and what those of the
-//! ranks before cover is taken from them. Projected curves have no such support: each of their arcs
-//! is drawn where no arc before it runs.
+//! edges. On a supporting line or ellipse the arcs of one rank are united, and the coverage of
+//! earlier ranks is subtracted. Projected curves have no such support: each of their arcs is drawn
+//! where no earlier arc runs.
 
 use super::image_arc::ImageArc;
 use super::image_arcs::DrawnArc;
@@ -12,12 +12,12 @@ use super::{Layer, Stroke};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// The order in which arcs are drawn: the earlier ones take the line from the later ones.
+/// The order in which arcs are drawn: a line belongs to the earliest one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rank {
     /// Whether something hides it.
     pub hidden: bool,
-    /// What it shows.
+    /// Its layer.
     pub layer: Layer,
 }
 
@@ -38,7 +38,7 @@ pub struct RankedArc<'c> {
     pub arc: ImageArc<'c>,
 }
 
-/// The strokes that draw arcs, each line once. Lines closer together than `tolerance` are one.
+/// The strokes that draw arcs, each line once. Lines nearer to each other than `tolerance` are one.
 pub fn strokes(arcs: Vec<DrawnArc<'_>>, tolerance: f64) -> Vec<Stroke> {
     let ranked = arcs.into_iter().map(|drawn| RankedArc {
         rank: Rank {
@@ -62,7 +62,7 @@ pub fn strokes(arcs: Vec<DrawnArc<'_>>, tolerance: f64) -> Vec<Stroke> {
     canvas.strokes
 }
 
-/// The arcs that are drawn, found by their boxes.
+/// The drawn arcs, indexed by their boxes.
 #[derive(Default)]
 struct Drawn<'c> {
     arcs: Vec<ImageArc<'c>>,
@@ -78,7 +78,7 @@ impl<'c> Drawn<'c> {
         self.arcs.push(arc);
     }
 
-    /// The arcs whose boxes come as near to that of another.
+    /// The arcs whose boxes are within a distance of another arc's box.
     fn near(&self, arc: &ImageArc<'_>, distance: f64) -> impl Iterator<Item = &ImageArc<'c>> {
         let [lo, hi] = arc.bounds();
         let grown = AABB::from_corners(
@@ -107,11 +107,11 @@ impl<'c> Canvas<'c> {
         }
     }
 
-    /// Draws an arc where none before it runs.
+    /// Draws an arc where no earlier one runs.
     fn draw(&mut self, RankedArc { rank, arc }: RankedArc<'c>) {
         let is_projected = matches!(arc, ImageArc::Projected { .. });
         let before = self.projected.near(&arc, self.tolerance);
-        // Arcs on supports are apart already.
+        // Arcs on supports are already disjoint.
         let others = is_projected.then(|| self.supported.near(&arc, self.tolerance));
         let others = others.into_iter().flatten();
         let covers = before.chain(others).collect::<Vec<_>>();
@@ -172,16 +172,17 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
     free
 }
 
-/// Where the course of an arc between two stops is compared with another's.
+/// The fractions between two stops at which an arc is compared with another.
 const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-/// Curves that cross or touch are within the tolerance over less than this many times of it: where they
-/// touch, over about the root of the tolerance and the drawing's size.
+/// Curves that cross or are tangent are within the tolerance over less than this many times of it:
+/// tangent ones over about the root of the tolerance and the drawing's size.
 const TOUCHING: f64 = (1u32 << 13) as f64;
-/// Into so many parts a span is cut first, so that the chords of a part tell its length.
+/// The number of parts into which a span is first divided, so that the chords of a part approximate
+/// its length.
 const PARTS: u32 = 8;
-/// By how much a part may be longer than its two chords.
+/// The greatest ratio of a part's length to its two chords.
 const BENT: f64 = 1.5;
-/// How often a span is halved to find where arcs part.
+/// The number of halvings of a span to find where arcs separate.
 const HALVINGS: u32 = 40;
 
 /// Consecutive parts of an arc whose middles lie on another: the first and the last.
@@ -190,7 +191,7 @@ struct Run {
     last: [f64; 2],
 }
 
-/// The search for where an arc runs along others, between two parameters.
+/// The search for the ranges in which an arc runs along others, between two parameters.
 struct Search<'a, 'c> {
     arc: &'a ImageArc<'c>,
     span: [f64; 2],
@@ -202,16 +203,16 @@ impl Search<'_, '_> {
         other.nearest(&self.arc.point(t)).distance <= self.tolerance
     }
 
-    /// Whether all of the span runs along another arc: analytic curves that share more than points
-    /// share all up to an end of one of them.
+    /// Whether the whole span runs along another arc: analytic curves that coincide over a range
+    /// coincide up to an end of one of them.
     fn is_whole(&self, other: &ImageArc<'_>) -> bool {
         let [lo, hi] = self.span;
         let mut places = PLACES.iter().map(|part| lo + (hi - lo) * part);
         places.all(|t| self.is_on(t, other))
     }
 
-    /// The ranges over which another arc stays within the tolerance, without those where the two only
-    /// cross or touch. A limb and an edge next to it may run so for a while.
+    /// The ranges over which another arc stays within the tolerance, without those where the two
+    /// only cross or are tangent. A limb and an edge next to it may run so for a while.
     fn stretches(&self, other: &ImageArc<'_>) -> Vec<[f64; 2]> {
         let [lo, hi] = self.span;
         let at = |k: u32| lo + (hi - lo) * f64::from(k) / f64::from(PARTS);
@@ -225,7 +226,7 @@ impl Search<'_, '_> {
             if other.approximate_distance(&p) > reach + length {
                 continue;
             }
-            // Four such parts are as long as curves touch.
+            // Four such parts are as long as a tangency.
             if 4.0 * length > TOUCHING * self.tolerance && a < middle && middle < b {
                 parts.extend([[middle, b], [a, middle]]);
                 continue;
@@ -248,8 +249,8 @@ impl Search<'_, '_> {
             .collect()
     }
 
-    /// Where a run really starts and ends: between the middle of its outermost part and the middle of
-    /// one as long next to it.
+    /// The exact ends of a run: between the middle of its outermost part and the middle of a part of
+    /// the same length next to it.
     fn ends(&self, run: &Run, other: &ImageArc<'_>) -> [f64; 2] {
         let [lo, hi] = self.span;
         let [a, b] = run.first;
@@ -317,7 +318,7 @@ mod tests {
         })
     }
 
-    /// 0 to 4 and 3 to 7 are seen; of 2 to 10 what is left is 7 to 10.
+    /// 0 to 4 and 3 to 7 are visible; of 2 to 10 the rest is 7 to 10.
     #[test]
     fn visible_segments_are_united_and_hidden_ones_lie_beside() {
         let all = [([0.0, 4.0], true), ([2.0, 10.0], false), ([7.0, 3.0], true)];
@@ -394,8 +395,8 @@ mod tests {
         assert!((from + 1.0).abs() < 1e-6 && to.abs() < 1e-6);
     }
 
-    /// y = x⁴ is within 1e-6 of the line y = 0 up to x = 10^(-3/2), y = x² up to x = 1e-3, which is no
-    /// more than curves touch.
+    /// y = x⁴ is within 1e-6 of the line y = 0 up to x = 10^(-3/2), y = x² up to x = 1e-3, which is
+    /// no longer than a tangency.
     #[test]
     fn a_curve_is_drawn_from_where_it_leaves_another() {
         let power = |exponent: i32| {

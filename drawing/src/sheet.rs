@@ -42,8 +42,8 @@ impl StandardView {
         }
     }
 
-    /// The camera of the view of a part about its middle, which is the origin of the image; `size` is
-    /// any length of the part's order.
+    /// The camera of the view of a part about its middle, which is the origin of the image; `size`
+    /// is any length of the part's order.
     pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<ViewCamera, CameraError> {
         let (from, up) = match self {
             Self::Front => (-Vector3::y(), Vector3::z()),
@@ -58,18 +58,18 @@ impl StandardView {
     }
 }
 
-/// On which side of the front view another stands.
+/// The projection method: the side of the front view on which another is placed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Angle {
-    /// Across from where it is seen from: the view from above stands below.
+    /// Opposite to the viewing side: the view from above is placed below.
     #[default]
     First,
-    /// Where it is seen from: the view from above stands above.
+    /// On the viewing side: the view from above is placed above.
     Third,
 }
 
 impl Angle {
-    /// The column and the row of a view, from the front view on, to the right and up.
+    /// The column and the row of a view relative to the front view, to the right and up.
     fn cell(self, view: StandardView) -> [i32; 2] {
         let side = match self {
             Self::First => -1,
@@ -87,7 +87,7 @@ impl Angle {
     }
 }
 
-/// A paper of ISO 216, lying.
+/// A paper of ISO 216 in landscape format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Paper {
     /// 1189 mm by 841 mm.
@@ -128,7 +128,7 @@ impl Paper {
     }
 }
 
-/// How long on the paper what length of the part is.
+/// The scale: a length on the paper for a length of the part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// On the paper.
@@ -159,7 +159,7 @@ impl Scale {
     }
 }
 
-/// Over how many powers of ten a scale is looked for, either way.
+/// The number of powers of ten in each direction over which a scale is searched.
 const DECADES: i32 = 16;
 
 impl std::fmt::Display for Scale {
@@ -168,7 +168,7 @@ impl std::fmt::Display for Scale {
     }
 }
 
-/// What stands on a sheet next to its views.
+/// The options of a sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetOptions {
     /// The title.
@@ -177,9 +177,9 @@ pub struct SheetOptions {
     pub unit: Unit,
     /// The paper.
     pub paper: Paper,
-    /// The scale; none for the greatest that has room.
+    /// The scale; none for the greatest that fits.
     pub scale: Option<Scale>,
-    /// How views stand around the front view.
+    /// The projection method.
     pub angle: Angle,
 }
 
@@ -204,37 +204,37 @@ impl SheetOptions {
     }
 }
 
-/// Why views are not put on a sheet.
+/// Why views cannot be placed on a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SheetError {
     /// There is no room for them.
-    #[error("at {scale} the views take {} mm by {} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them: a greater `--paper`, a smaller `--scale`, or none, helps", number(width.round()), number(height.round()), paper = paper.name())]
+    #[error("at {scale} the views take {} mm by {} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them; use a larger `--paper`, a smaller `--scale`, or no `--scale`", number(width.round()), number(height.round()), paper = paper.name())]
     Room {
         /// The scale.
         scale: Scale,
-        /// What the views take.
+        /// The size of the views.
         width: f64,
-        /// What the views take.
+        /// The size of the views.
         height: f64,
         /// The paper.
         paper: Paper,
-        /// What there is.
+        /// The available room.
         room_width: f64,
-        /// What there is.
+        /// The available room.
         room_height: f64,
     },
     /// A view in perspective has a scale.
     #[error("a view in perspective has no scale")]
     Perspective,
-    /// Nothing is as large as a line on paper, or everything is larger.
-    #[error("no scale brings what is {size:e} mm large onto paper")]
+    /// The views are so small or so large that no scale fits them onto paper.
+    #[error("no scale fits a size of {size:e} mm onto paper")]
     Size {
         /// The size of the views.
         size: f64,
     },
 }
 
-/// What a line of the frame is for.
+/// The weight of a line of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
     /// The frame.
@@ -243,25 +243,26 @@ pub enum Weight {
     Thin,
 }
 
-/// What is neither view nor paper.
+/// An element of the frame or the title block.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SheetMark {
     /// A straight line.
     Line([Point2<f64>; 2], Weight),
     /// A circle, by centre and radius.
     Circle(Point2<f64>, f64),
-    /// A line of text, from the left end of its base line, as high as a capital letter.
+    /// A line of text: the left end of its base line, the height of its capital letters, and the
+    /// text.
     Text(Point2<f64>, f64, String),
 }
 
-/// A view in its place.
+/// A placed view.
 #[derive(Clone, Debug)]
 pub struct PlacedView {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Its strokes.
     pub drawing: Drawing,
-    /// Where the origin of its image lies on the paper.
+    /// The position of the origin of its image on the paper.
     pub at: Point2<f64>,
 }
 
@@ -278,11 +279,12 @@ pub struct Sheet {
     pub factor: f64,
     /// The scale; none where the views are in perspective.
     pub scale: Option<Scale>,
-    /// What was requested.
+    /// The options.
     pub options: SheetOptions,
 }
 
-/// How far the frame is from the left edge of the paper, to file it, and from the others (ISO 5457).
+/// The distance of the frame from the left edge of the paper, for filing, and from the other edges
+/// (ISO 5457).
 const FILING: f64 = 20.0;
 const MARGIN: f64 = 10.0;
 /// The title block.
@@ -290,11 +292,12 @@ const TITLE: [f64; 2] = [180.0, 24.0];
 /// The least distance between views, and between them and the frame.
 const GAP: f64 = 12.0;
 
-/// The extent of columns, or of rows: how far what stands in each reaches on both sides of the origins.
+/// The extent of columns, or of rows: how far the views in each extend on both sides of the
+/// origins.
 type Bands = BTreeMap<i32, [f64; 2]>;
 
 impl Sheet {
-    /// Views on a paper. A view without a name among them stands alone.
+    /// Places views on a paper. A view without a name must be the only one.
     pub fn new(
         views: Vec<(Option<StandardView>, Drawing)>,
         options: SheetOptions,
@@ -339,13 +342,13 @@ impl Sheet {
     }
 }
 
-/// The lower left and the upper right corner of where views may stand.
+/// The lower left and the upper right corner of the room for views.
 fn room(paper: Paper) -> [Vector2<f64>; 2] {
     let low = Vector2::new(FILING, MARGIN + TITLE[1]);
     [low, paper.size() - Vector2::new(MARGIN, MARGIN)]
 }
 
-/// How many millimetres an image unit takes, and the scale that this is.
+/// The millimetres of an image unit, and the corresponding scale.
 fn fitted(
     taken: [f64; 2],
     gaps: [f64; 2],
@@ -386,7 +389,7 @@ fn fitted(
     Ok((factor, Some(scale)))
 }
 
-/// Where the origins of columns lie, or of rows: one after the other, the gap before and between them.
+/// The origins of columns, or of rows, one after the other, with the gap before and between them.
 fn origins(resolutions: &Bands, start: f64, gap: f64, factor: f64) -> BTreeMap<i32, f64> {
     let mut at = start;
     let mut places = BTreeMap::new();
@@ -400,13 +403,13 @@ fn origins(resolutions: &Bands, start: f64, gap: f64, factor: f64) -> BTreeMap<i
 
 /// The widths of the title block's cells: title, scale, unit, paper, projection.
 const CELLS: [f64; 5] = [96.0, 24.0, 18.0, 18.0, 24.0];
-/// How high capital letters are: of labels, of what they are labels of, of the title at the most.
+/// The heights of capital letters: of labels, of their values, and at most of the title.
 const LABEL: f64 = 1.8;
 const VALUE: f64 = 3.5;
 const NAME: f64 = 5.0;
-/// How far text is from the lines around it.
+/// The distance of text from the lines around it.
 const INSET: f64 = 2.0;
-/// How wide a letter is, as a part of its height, at the most.
+/// The greatest width of a letter, relative to its height.
 const WIDE: f64 = 0.9;
 
 /// The frame and the title block.
@@ -451,7 +454,8 @@ fn marks(options: &SheetOptions, scale: Option<Scale>) -> Vec<SheetMark> {
 }
 
 /// The symbol of the projection: a truncated cone from the side, and from its small end. That view
-/// stands next to the small end in the third angle, and next to the large end in the first.
+/// is next to the small end in third angle projection, and next to the large end in first angle
+/// projection.
 fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<SheetMark> {
     const SMALL: f64 = 2.0;
     const LARGE: f64 = 4.0;
@@ -530,7 +534,7 @@ mod tests {
         }
     }
 
-    /// 390 mm have room for 100 mm and three gaps of 12 mm 3.5 times, 253 mm for 60 mm 3.6 times.
+    /// 390 mm fit 100 mm and three gaps of 12 mm 3.5 times, 253 mm fit 60 mm 3.6 times.
     #[test]
     fn the_scale_is_the_greatest_with_room() {
         let sheet = Sheet::new(views(), options(Angle::First)).unwrap();
@@ -553,7 +557,8 @@ mod tests {
         assert!(matches!(error, SheetError::Room { width, .. } if width == 536.0));
     }
 
-    /// What the optical axis does not pass stands in the middle of the paper all the same.
+    /// A part that the optical axis does not pass through is still placed in the middle of the
+    /// paper.
     #[test]
     fn a_view_beside_its_axis_has_the_paper_for_itself() {
         let beside = Drawing {

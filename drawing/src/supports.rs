@@ -8,7 +8,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::f64::consts::TAU;
 
-/// What arcs lie on.
+/// The support of arcs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Support {
     /// A line; the parameter is the distance from the origin along the unit direction.
@@ -23,15 +23,15 @@ enum Support {
 /// Arcs on one support.
 struct Group<'c> {
     support: Support,
-    /// The longest arc, which gives the support.
+    /// The index of the longest arc, which defines the support.
     longest: usize,
     members: Vec<RankedArc<'c>>,
-    /// The group that has taken these arcs in, if one has.
+    /// The group into which this one was merged, if it was.
     merged: Option<usize>,
 }
 
-/// Segments and arcs of ellipses, those on one support united by rank, so that no two of them share
-/// a stretch. What is no longer than `tolerance` is left out.
+/// Unites segments and arcs of ellipses on one support by rank, so that no two of them overlap.
+/// Pieces no longer than `tolerance` are left out.
 pub fn on_supports<'c>(mut arcs: Vec<RankedArc<'c>>, tolerance: f64) -> Vec<RankedArc<'c>> {
     arcs.retain(|a| a.arc.reach() > tolerance);
     arcs.sort_by(|a, b| b.arc.length().total_cmp(&a.arc.length()));
@@ -86,7 +86,7 @@ fn grouped<'c>(arcs: &[RankedArc<'c>], tolerance: f64) -> Vec<Group<'c>> {
     groups
 }
 
-/// The group that holds the arcs of one.
+/// The group into which a group is finally merged.
 fn root(groups: &[Group<'_>], mut group: usize) -> usize {
     while let Some(next) = groups[group].merged {
         group = next;
@@ -95,7 +95,7 @@ fn root(groups: &[Group<'_>], mut group: usize) -> usize {
 }
 
 impl<'c> Group<'c> {
-    /// The stretches of the support that its arcs cover, by rank.
+    /// The pieces of the support that its arcs cover, by rank.
     fn united(&self, tolerance: f64) -> Vec<RankedArc<'c>> {
         let gap = self.support.parameter_of_length(tolerance);
         let mut united = Vec::new();
@@ -113,7 +113,7 @@ impl<'c> Group<'c> {
     }
 }
 
-/// Where on an arc of an ellipse it is compared with another ellipse.
+/// The fractions of an arc of an ellipse at which it is compared with another ellipse.
 const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 impl Support {
@@ -149,7 +149,7 @@ impl Support {
         }
     }
 
-    /// How much of the parameter a length in the image takes.
+    /// The parameter interval of a length in the image.
     fn parameter_of_length(&self, length: f64) -> f64 {
         match self {
             Self::Line { .. } => length,
@@ -173,7 +173,7 @@ impl Support {
                 let angle = |t: f64| ellipse.angle(&arc.point(t)).rem_euclid(TAU);
                 let [from, to] = match hi - lo >= TAU {
                     true => [0.0, TAU],
-                    // A short arc of another ellipse may bend the other way.
+                    // A short arc of another ellipse may have the opposite orientation.
                     false => ordered(angle(*lo), angle(0.5 * (lo + hi)), angle(*hi)),
                 };
                 match to <= TAU {
@@ -185,7 +185,7 @@ impl Support {
         }
     }
 
-    /// The arcs over intervals; those of an ellipse are joined where its parameter begins anew.
+    /// The arcs over intervals; those of an ellipse are joined at the end of its period.
     fn arcs<'c>(&self, intervals: &Intervals, gap: f64) -> Vec<ImageArc<'c>> {
         let mut all = intervals.as_slice().to_vec();
         match self {

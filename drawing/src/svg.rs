@@ -1,4 +1,4 @@
-//! Drawings as SVG: readable by a browser, lines and ellipses exact.
+//! Drawings as SVG for browsers, with exact lines and ellipses.
 
 use super::sheet::{PlacedView, Sheet, SheetMark, Weight};
 use super::{Drawing, Layer, Stroke, StrokeShape};
@@ -16,18 +16,18 @@ const STYLE: &str = "svg{background:#fff}path{fill:none;stroke:#000;stroke-linec
 .boundary{stroke-width:2}.limb{stroke-width:2}.smooth{stroke-width:1;stroke:#888}\
 .hidden{stroke-width:1;stroke-dasharray:7 5;stroke:#777}";
 
-/// Line weights in millimetres after ISO 128: 0.5 for what is seen, half of it for what is not, for
-/// smooth boundaries and within the title block.
+/// Line weights in millimetres by ISO 128: 0.5 for visible lines, half of it for hidden lines, for
+/// smooth boundaries and inside the title block.
 const SHEET_STYLE: &str = "svg{background:#fff}path,circle{fill:none;stroke:#000;stroke-linecap:round;stroke-linejoin:round}\
 text{font-family:sans-serif}\
 .boundary,.limb{stroke-width:.5}.smooth{stroke-width:.25;stroke:#888}\
 .hidden{stroke-width:.25;stroke-dasharray:3 .75}.thick{stroke-width:.7}.thin{stroke-width:.25}";
 
-/// How image units come onto the page, whose y is down.
+/// The map from image units to the page, whose y is down.
 struct Page {
-    /// Where the origin of the image lies.
+    /// The position of the image's origin.
     origin: Vector2<f64>,
-    /// How long an image unit is.
+    /// The length of an image unit.
     scale: f64,
 }
 
@@ -74,10 +74,10 @@ impl Page {
         let (x, y) = point(*from);
         let _ = write!(out, "M{} {}", long(x), long(y));
         let (rx, ry) = (major.norm() * self.scale, major.norm() * ratio * self.scale);
-        // The page's y is down, so the angle turns over and the arc runs against the clock.
+        // The page's y is down, so the angle changes its sign and the arc is counterclockwise.
         let turn = -major.y.atan2(major.x).to_degrees();
-        // At most a quarter at once: next to half a turn the centre depends on the root of the radius'
-        // last digit.
+        // At most a quarter turn at once: near half a turn the centre depends on the last digit of
+        // the radius.
         let parts = (sweep / (TAU / 4.0)).ceil().clamp(1.0, 4.0) as u32;
         for k in 1..=parts {
             let (x, y) = point(from + sweep * f64::from(k) / f64::from(parts));
@@ -99,8 +99,8 @@ fn short(x: f64) -> String {
     trimmed(format!("{x:.4}"))
 }
 
-/// A number of an arc with some digits more: the centre follows from the ends, and where an ellipse is
-/// thin what they are off across it counts along it by the ratio.
+/// A number of an arc with more digits: the centre follows from the ends, and on a thin ellipse an
+/// error across it is an error along it divided by the ratio.
 fn long(x: f64) -> String {
     trimmed(format!("{x:.7}"))
 }
@@ -189,7 +189,7 @@ pub fn write_sheet(sheet: &Sheet) -> String {
     out
 }
 
-/// Capital letters of most typefaces are so high, as a part of the type size.
+/// The height of capital letters of most typefaces, relative to the type size.
 const CAPITAL: f64 = 0.72;
 
 impl Page {

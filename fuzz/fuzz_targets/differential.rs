@@ -1,16 +1,16 @@
-//! Two ways to every answer, on small parts: whether the boundary holds a point against whether the
-//! tree does, and the quantitative invisibility of every piece of a view, and the contours that are
-//! there, against rays in the tree.
+//! Two independent ways to every answer, on small parts: point membership by the boundary and by
+//! the tree; the quantitative invisibility of every piece of a view, and the completeness of
+//! contours, against rays in the tree.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Vector3;
-use premio_verify::checks::{Checker, Finding};
 use premio_csg::ray_casting::RayOracle;
 use premio_fuzz::{Part, Recipe};
 use premio_kernel::brep::point_in_solid::contains;
+use premio_verify::checks::{Checker, Finding};
 
-/// How many points are asked about.
+/// The number of points that are classified.
 const POINTS: u32 = 32;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let known = &part.evaluation;
     let material = RayOracle::new(&part.tree);
-    // What is so near to the boundary tells nothing.
+    // Points near the boundary within the resolution are skipped.
     let resolution = known.f64_resolution();
     let near = 1000.0 * resolution;
     let steps = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * near);

@@ -1,5 +1,5 @@
 //! Small parts: no panic, the boundary keeps its rules, its measures are those of a solid, and a
-//! second evaluation tells the same.
+//! second evaluation gives the same result.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

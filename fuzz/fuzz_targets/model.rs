@@ -1,5 +1,5 @@
-//! Any bytes as a model: none may panic or hang, and what is wrong is told at a place in the text. With
-//! its own digest, so that more than that is looked at, what is read teaches a matcher.
+//! Arbitrary bytes as a model. None may panic or hang, and errors have a position in the text. The
+//! digest is corrected, so that the rest is tested, too; a model that is read is used for matching.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

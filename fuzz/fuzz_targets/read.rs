@@ -1,5 +1,5 @@
-//! Any bytes, to each of the readers: none may panic, overflow the stack or hang. What is read is
-//! written, and must be read again.
+//! Arbitrary bytes for each of the readers. None may panic, overflow the stack or hang. A part that
+//! is read is written, and must be read again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
                 Err(error) => {
                     assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
                 }
-                // Smooth or not, what is read is written alike.
+                // The smooth option does not change what is written.
                 Ok(source) if !smooth => again(&source.builder, source.part),
                 Ok(_) => {}
             }
@@ -22,7 +22,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// Writes a part in each language; what can hold it means the same tree.
+/// Writes a part in each language; a language that can express it must give the same tree.
 fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::SolidId) {
     let Ok(tree) = builder.finish(part) else {
         return;
@@ -31,7 +31,7 @@ fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Soli
         return;
     }
     for format in [Format::Csg, Format::Json] {
-        // What these cannot hold is rounded, and may then be no solid.
+        // Values that these cannot express are rounded, and may then give no solid.
         if let Ok(text) = write(builder, part, format) {
             let _ = read("again", text.as_bytes(), format, &ReadOptions::default());
         }
@@ -42,7 +42,12 @@ fn again(builder: &premio_csg::builder::Builder, part: premio_csg::builder::Soli
         Ok(text) if text.len() > 1000 => {}
         written => {
             let text = written.expect("a small part is written");
-            let other = read("again", text.as_bytes(), Format::Padl, &ReadOptions::default());
+            let other = read(
+                "again",
+                text.as_bytes(),
+                Format::Padl,
+                &ReadOptions::default(),
+            );
             let other = other.unwrap_or_else(|error| panic!("{error}\n{text}")).tree;
             assert!(tree.departure(&other).is_some(), "{text}");
         }

@@ -1,5 +1,5 @@
-//! Any bytes as setups, of one image and of a model: none may panic or hang, what is wrong is told at
-//! a place in the text, and what is read and written again reads the same.
+//! Arbitrary bytes as setups, of one image and of a model. None may panic or hang; errors have a
+//! position in the text; a setup that is written and read again is the same.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -13,7 +13,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     match Setup::from_toml(text) {
-        Err(error) => told(&error, text),
+        Err(error) => check_span(&error, text),
         Ok(setup) => {
             let again = toml::to_string(&setup).expect("a setup is written");
             assert_eq!(Setup::from_toml(&again), Ok(setup.clone()), "{again}");
@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
         }
     }
     match Setups::from_toml(text) {
-        Err(error) => told(&error, text),
+        Err(error) => check_span(&error, text),
         Ok(setups) => {
             let again = toml::to_string(&setups).expect("setups are written");
             assert_eq!(Setups::from_toml(&again), Ok(setups.clone()), "{again}");
@@ -34,15 +34,15 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The place of an error is in the text.
-fn told(error: &SetupError, text: &str) {
+/// Checks that the position of an error is in the text.
+fn check_span(error: &SetupError, text: &str) {
     assert!(!error.to_string().is_empty());
     if let Some(span) = error.span(text) {
         assert!(text.get(span.clone()).is_some(), "{span:?} {error}\n{text}");
     }
 }
 
-/// What a part would ask of a setup that is in its ranges.
+/// Evaluates a valid setup as a prediction would.
 fn used(setup: &Setup) {
     let sensor = &setup.conditions.sensor;
     let centre = Point3::new(1.0, 2.0, 3.0);

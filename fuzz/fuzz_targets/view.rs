@@ -1,4 +1,4 @@
-//! Views of small parts: no panic, pieces that follow one another, and a drawing.
+//! Views of small parts: no panic, consecutive pieces, and a drawing.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,9 +1,11 @@
-//! Small parts under any name, in every format: what is written is read again, by readers of others
-//! where there are any, and says the same of the part.
+//! Small parts under arbitrary names, in every format: files are read again, by other programs'
+//! readers where there are any, and describe the same part.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use premio_csg::object_model::ObjectModel;
+use premio_drawing::sheet::{self, Sheet, StandardView};
+use premio_drawing::{Drawing, dxf, svg};
 use premio_exchange::mesh::{Facets, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_fuzz::{Part, Recipe, Sight};
@@ -11,11 +13,9 @@ use premio_kernel::tessellation::Accuracy;
 use premio_kernel::unit::Unit;
 use premio_text::escape::is_unsafe;
 use premio_visibility::contours;
-use premio_drawing::sheet::{self, Sheet, StandardView};
-use premio_drawing::{Drawing, dxf, svg};
 use std::io::{Cursor, Read};
 
-/// So many of the first bytes are the name.
+/// The number of bytes at the beginning that are the name.
 const NAME: usize = 16;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -33,7 +33,8 @@ fuzz_target!(|bytes: &[u8]| {
 
 fn boundary(part: &Part, name: &str) {
     let known = &part.evaluation;
-    let text = serde_json::to_string(&ObjectModel::new(&known.brep)).expect("a boundary is written");
+    let text =
+        serde_json::to_string(&ObjectModel::new(&known.brep)).expect("a boundary is written");
     let value: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
     assert!(value.is_object(), "{text}");
     let size = known.bounds.diagonal();
@@ -49,7 +50,7 @@ fn boundary(part: &Part, name: &str) {
     }
 }
 
-/// The rules of ISO 10303-21: its alphabet, strings that end, instances that are there.
+/// Checks rules of ISO 10303-21: the alphabet, terminated strings, existing instances.
 fn exchange(text: &str) {
     assert!(text.starts_with("ISO-10303-21;") && text.trim_end().ends_with("END-ISO-10303-21;"));
     let is_letter = |b: u8| matches!(b, b'\n' | b'\r' | b' '..=b'~');

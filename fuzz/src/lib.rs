@@ -1,23 +1,23 @@
-//! Parts out of bytes: what the targets for the geometry share.
+//! Parts generated from bytes, for the targets of the geometry.
 //!
-//! A few bytes are a small tree whose lengths lie on a half-unit grid, next to it by any power of
-//! two, or anywhere; so that a change of one byte moves, turns or grows one thing, and coincidences
-//! abound.
+//! A few bytes give a small tree whose lengths lie on a half-unit grid, near it by any power of
+//! two, or anywhere. So a change of one byte moves, rotates or scales one primitive, and
+//! coincidences are frequent.
 
 mod recipe;
 
 use nalgebra::{Point3, Vector3};
-use premio_verify::generator::model::PartModel;
-use premio_verify::generator::write::{Format, write};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{ReadOptions, read};
 use premio_csg::tree::Tree;
+use premio_verify::generator::model::PartModel;
+use premio_verify::generator::write::{Format, write};
 use premio_visibility::ViewCamera;
 
 pub use recipe::{Recipe, Sight};
 use std::sync::LazyLock;
 
-/// A block with a bore: what the targets for models and cameras look at.
+/// A block with a bore, for the targets of models and cameras.
 pub static BORED_BLOCK: LazyLock<Evaluation> = LazyLock::new(|| {
     let text = "PART = BLO(X=6, Y=4, Z=2) DIF (CYL(R=1, H=4) AT (MOVX=3, MOVY=2, MOVZ=-1))";
     let format = premio_csg::reader::Format::Padl;
@@ -32,16 +32,16 @@ pub static BORED_BLOCK: LazyLock<Evaluation> = LazyLock::new(|| {
 /// A part to be tried.
 #[derive(Debug)]
 pub struct Part {
-    /// The description, for whoever is told that it fails.
+    /// The description, for the report of a failure.
     pub text: String,
-    /// What it describes.
+    /// The tree of the description.
     pub tree: Tree,
     /// Its boundary.
     pub evaluation: Evaluation,
 }
 
 impl Part {
-    /// The part of a model; none where it is refused, which is no find.
+    /// The part of a model; none where it is refused, which is not a finding.
     pub fn new(model: &PartModel) -> Option<Self> {
         let text = write(model, Format::Padl);
         let json = write(model, Format::Json);
@@ -74,7 +74,7 @@ impl Part {
         }
     }
 
-    /// The k-th of points spread evenly over a box that is a little larger than the part's (Halton's
+    /// The k-th of points spread evenly over a box slightly larger than the part's (Halton's
     /// sequence).
     pub fn place(&self, k: u32) -> Point3<f64> {
         let bounds = &self.evaluation.bounds;
@@ -87,7 +87,7 @@ impl Part {
     }
 }
 
-/// The digits of a number to a base, behind the point and in reverse.
+/// The radical inverse of a number in a base: its digits reversed behind the point.
 fn inverse(mut n: u32, base: u32) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0);
     while n > 0 {

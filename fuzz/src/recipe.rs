@@ -1,26 +1,29 @@
-//! Bytes, taken one after the other, as choices.
+//! Bytes read in sequence as choices.
 
-use premio_verify::generator::model::{ModelAxis, PartModel, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep};
+use premio_verify::generator::model::{
+    ModelAxis, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, PartModel,
+};
 
-/// Bytes that are taken as choices; where they end, each further one is the first.
+/// Bytes that are read as choices; after their end every choice is the first one.
 #[derive(Debug)]
 pub struct Recipe<'a> {
     bytes: &'a [u8],
 }
 
-/// Where a part is seen from.
+/// The viewpoint of a part.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
     /// From the part towards the eye.
     pub direction: [f64; 3],
-    /// How far away a perspective camera is, in terms of the part's size; else it is orthographic.
+    /// The distance of a perspective camera in multiples of the part's size; none for an
+    /// orthographic one.
     pub distance: Option<f64>,
 }
 
 /// The most primitives of a model.
 const MOST: usize = 5;
 
-/// The turns of the grid, in degrees.
+/// The angles of the grid, in degrees.
 const TURNS: [f64; 8] = [90.0, -90.0, 180.0, 45.0, 30.0, 17.0, 60.0, 36.875];
 
 impl<'a> Recipe<'a> {
@@ -53,7 +56,7 @@ impl<'a> Recipe<'a> {
             let primitive = self.primitive();
             let steps = self.steps();
             open.push(model.leaf(primitive, steps));
-            // Operations on what is there already, or later on all.
+            // Operations on the open solids, now or at the end.
             while open.len() > 1 && self.below(2) == 1 {
                 let last = open.split_off(open.len() - 2);
                 let steps = self.rarely_steps();
@@ -168,7 +171,7 @@ impl<'a> Recipe<'a> {
         ModelStep::Turn(axis, degrees)
     }
 
-    /// How to look at the part.
+    /// A viewpoint.
     pub fn sight(&mut self) -> Sight {
         let distance = [None, Some(0.8), Some(2.0), Some(20.0)][self.below(4)];
         let direction = self.direction();

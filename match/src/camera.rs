@@ -18,12 +18,12 @@ pub enum PinholeError {
     /// The matrix is none of a camera.
     #[error("camera: `K` {0}")]
     Matrix(&'static str),
-    /// Lenses that bend lines are not known.
+    /// Lens distortion is not supported.
     #[error("camera: `dist` is not zero; undistort the picture first")]
     Distorted,
-    /// The picture has another size.
+    /// The image has another size.
     #[error(
-        "camera: it is of {} x {} pixels, the picture has {} x {}",
+        "camera: it is for {} x {} pixels, and the picture has {} x {}",
         number(.camera[0]), number(.camera[1]), .picture[0], .picture[1]
     )]
     Size {
@@ -32,7 +32,7 @@ pub enum PinholeError {
         /// The picture's.
         picture: [usize; 2],
     },
-    /// No camera sees so much, or so little.
+    /// The field of view is that of no camera.
     #[error(
         "camera: `K` has a focal length of {} pixels, for a picture of {size}: expected {} to {} times \
          as many, as for views of {:.0} to {:.2} degrees{}",
@@ -41,10 +41,10 @@ pub enum PinholeError {
     Focal {
         /// In pixels.
         focal: f64,
-        /// The picture's longer side.
+        /// The image's longer side.
         size: usize,
     },
-    /// The optical axis is far out of the picture.
+    /// The principal point is far outside the image.
     #[error(
         "camera: `K` has its centre at ({}, {}), far outside the picture",
         number(x.round()), number(y.round())
@@ -78,18 +78,18 @@ pub enum PinholeError {
     },
 }
 
-/// The focal lengths of cameras, in the picture's longer side. Lenses that keep lines straight see 130
-/// degrees at most: the least ratio admits them, and rejects focal lengths in millimetres.
+/// The focal lengths of cameras, in the picture's longer side. Lenses that keep lines straight see
+/// 130 degrees at most: the least ratio admits them, and rejects focal lengths in millimetres.
 const FOCALS: [f64; 2] = [0.1, 1000.0];
 
-/// The most that fx and fy differ by, as a quotient: pixels of video fields and of anamorphic lenses
-/// are twice as long one way.
+/// The most that fx and fy differ by, as a quotient: pixels of video fields and of anamorphic
+/// lenses are twice as long one way.
 const ASPECT: f64 = 2.5;
 
 /// The most skew, in focal lengths: six degrees.
 const SKEW: f64 = 0.1;
 
-/// What a focal length that is too short probably is.
+/// A hint at the probable cause of a focal length that is too short.
 fn hint(focal: f64, size: usize) -> &'static str {
     match focal < size as f64 {
         true => "; is it in millimetres?",
@@ -97,13 +97,13 @@ fn hint(focal: f64, size: usize) -> &'static str {
     }
 }
 
-/// The view of a focal length in the picture's side, in degrees.
+/// The field of view in degrees of a focal length in the image's longer side.
 fn view(focal: f64) -> f64 {
     2.0 * 0.5f64.atan2(focal).to_degrees()
 }
 
 impl PinholeError {
-    /// The bytes of the camera's JSON at which it is, where they are known.
+    /// The byte range of the error in the camera's JSON, where it is known.
     pub fn span(&self, text: &str) -> Option<Range<usize>> {
         let key = match self {
             Self::Text(error) => return error.span.clone(),
@@ -122,7 +122,7 @@ impl PinholeError {
         Some(member.map_or(document.root.span.clone(), |m| m.key_span.clone()))
     }
 
-    /// Whether the camera may be that of another picture.
+    /// Whether the camera may belong to another image.
     pub fn is_of_picture(&self) -> bool {
         matches!(
             self,
@@ -131,7 +131,8 @@ impl PinholeError {
     }
 }
 
-/// A camera's JSON: of OpenCV's matrices `K` is needed. Where the camera stands is what is asked.
+/// A camera's JSON: of OpenCV's matrices only `K` is required. The pose is what the search
+/// determines.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Raw {
@@ -147,7 +148,7 @@ struct Raw {
     _t: Option<[f64; 3]>,
 }
 
-/// What a camera's file says, before there is a picture.
+/// The content of a camera file, before the image is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraFile {
     pinhole: Pinhole,
@@ -180,10 +181,10 @@ impl CameraFile {
         })
     }
 
-    /// The camera for a picture of so many pixels.
+    /// The camera for an image with a width and height in pixels.
     ///
     /// # Errors
-    /// The picture is of another size, or no camera takes such pictures.
+    /// The image has another size, or a value is out of the range of cameras.
     pub fn for_picture(&self, picture: [usize; 2]) -> Result<Pinhole, PinholeError> {
         let of = [0, 1].map(|i| self.size[i].unwrap_or(picture[i] as f64));
         if (0..2).any(|i| of[i] != picture[i] as f64) {
@@ -206,8 +207,8 @@ impl CameraFile {
     }
 }
 
-/// Whether rows are of length one and square to one another, to the four digits that files have, and
-/// nothing is mirrored.
+/// Whether the rows are orthonormal to the four digits that files have, and the determinant is
+/// positive.
 fn is_rotation(r: &Matrix3<f64>) -> bool {
     let off = (r * r.transpose() - Matrix3::identity()).amax();
     off <= f64::EPSILON.sqrt().sqrt() && r.determinant() > 0.0
@@ -226,7 +227,7 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// The camera of a JSON text, for a picture of so many pixels.
+    /// The camera of a JSON text, for an image with a width and height in pixels.
     pub fn from_json(text: &str, picture: [usize; 2]) -> Result<Self, PinholeError> {
         CameraFile::from_json(text)?.for_picture(picture)
     }
@@ -285,7 +286,7 @@ impl Pinhole {
         Vector3::new(x, y, 1.0).normalize()
     }
 
-    /// The camera of the picture with half as many pixels each way, of which each is the mean of four.
+    /// The camera of the image reduced to half its width and height, each pixel the mean of four.
     #[must_use]
     pub fn halved(&self) -> Self {
         Self {
@@ -295,7 +296,7 @@ impl Pinhole {
         }
     }
 
-    /// The camera of `visibility`, where the part is at a pose.
+    /// The camera of `visibility` for the part at a pose.
     pub fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> ViewCamera {
         ViewCamera {
             model: CameraModel::Matrices {

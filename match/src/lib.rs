@@ -4,7 +4,8 @@
 //!
 //! 1. [`camera`]: the pinhole camera.
 //! 2. [`image`]: edges, lines and corners of an image.
-//! 3. [`part`]: samples along the part's edges, its symmetries, visibility by direction and detectability.
+//! 3. [`part`]: samples along the part's edges, its symmetries, visibility by direction and
+//!    detectability.
 //! 4. [`pose`]: poses from few features, and least squares on poses.
 //! 5. [`hypothesis`]: poses proposed and sorted by a coarse score.
 //! 6. [`correspondence`]: predicted contours and image features as an assignment problem.

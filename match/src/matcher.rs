@@ -1,5 +1,5 @@
-//! The part looked for in a picture: from chains of lines to poses, from poses to correspondences, and
-//! back, until they stay.
+//! The search for a part in one image: chains of lines propose poses, poses give correspondences,
+//! and correspondences refine poses until both converge.
 
 use crate::camera::Pinhole;
 use crate::correspondence::predicted_contours::{PredictedContour, arcs};
@@ -20,23 +20,23 @@ use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::Isometry3;
 use rayon::prelude::*;
 
-/// A part that is looked for in a picture.
+/// The search for a part in an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Matcher<'a> {
     /// The part.
     pub part: &'a SoughtPart<'a>,
-    /// What predictions tell of its features.
+    /// The detectability of its features, from predictions.
     pub learned: &'a DetectabilityPrior,
-    /// The picture.
+    /// The features of the image.
     pub picture: &'a ImageFeatures,
-    /// What took it.
+    /// The camera of the image.
     pub camera: &'a Pinhole,
-    /// How it is looked for.
+    /// The options of the search.
     pub options: &'a SearchOptions,
 }
 
 impl Matcher<'_> {
-    /// All that is found, wherever the part may be.
+    /// Searches the whole image.
     pub fn find(&self) -> SearchResult {
         let Self {
             part,
@@ -64,11 +64,13 @@ impl Matcher<'_> {
             best.par_iter().filter_map(|h| self.at(&h.pose)).collect();
         matches.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
         let rest = matches.split_off(matches.len().min(IMPROVED));
-        let mut matches: Vec<PartMatch> =
-            matches.into_par_iter().map(|m| self.improved(m)).collect();
+        let mut matches: Vec<PartMatch> = matches
+            .into_par_iter()
+            .map(|m| self.with_outliers_removed(m))
+            .collect();
         matches.extend(rest);
-        let judged = matches.into_par_iter().map(|m| self.judged(m)).collect();
-        let matches = different(part, camera, judged);
+        let scored = matches.into_par_iter().map(|m| self.scored(m)).collect();
+        let matches = different(part, camera, scored);
         let (matches, few): (Vec<PartMatch>, Vec<PartMatch>) =
             matches.into_iter().partition(|m| m.is_determined(part));
         SearchResult {
@@ -80,12 +82,12 @@ impl Matcher<'_> {
         }
     }
 
-    /// The correspondences at about a pose, and the pose that they tell, in turns.
+    /// The match near a pose: correspondences and pose are refined in turn until they converge.
     pub fn matched(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
-        self.at(start).map(|found| self.judged(found))
+        self.at(start).map(|found| self.scored(found))
     }
 
-    /// The same, before it is judged.
+    /// The match near a pose, without its prior odds.
     fn at(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
         let Self {
             part,
@@ -105,7 +107,7 @@ impl Matcher<'_> {
                 break;
             };
             pose = refined.pose;
-            let next = self.weighed(&problem, &solution, arcs, &refined, pulls)?;
+            let next = self.evaluated(&problem, &solution, arcs, &refined, pulls)?;
             let stays = known.as_ref().is_some_and(|m| m.taken().eq(next.taken()));
             if known.as_ref().is_some_and(|m| next.ratio < m.ratio) {
                 break;
@@ -118,8 +120,8 @@ impl Matcher<'_> {
         known
     }
 
-    /// The match of correspondences, at the pose that is refined to what they pull at.
-    fn weighed(
+    /// The match of an assignment at the pose that is refined to it, with its log-likelihood ratio.
+    fn evaluated(
         &self,
         problem: &Correspondence,
         solution: &Solution,
@@ -132,11 +134,12 @@ impl Matcher<'_> {
         let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
         let distance = (pose * self.part.centre).z;
         let inverse = with_prior(&refined.information, distance).try_inverse()?;
-        // As far as attributes tell: of each found feature how far next to and how much askew it is.
+        // The covariance that the attributes used in the score give: an offset and an angle of each
+        // found feature.
         let weight: f64 = pulls.iter().flatten().map(|p| p.weight).sum();
         let found = solution.assignment.iter().flatten().count();
-        let told = inverse * (ADJACENT.powi(2) * weight / (2.0 * found as f64));
-        let mut weighed = PartMatch {
+        let used = inverse * (ADJACENT.powi(2) * weight / (2.0 * found as f64));
+        let mut evaluated = PartMatch {
             pose,
             covariance: inverse * rms.max(MIN_RATE).powi(2),
             rms,
@@ -146,7 +149,7 @@ impl Matcher<'_> {
             odds: 0.0,
             shape: ShapeEvidence::default(),
             framed: 0.0,
-            fitted: fitted(self.part, self.camera, self.picture.size, &pose, &told),
+            fitted: fitted(self.part, self.camera, self.picture.size, &pose, &used),
             relations: related(problem, solution),
             pairs: pairs(problem, &arcs, solution),
             effort: solution.effort,
@@ -154,29 +157,30 @@ impl Matcher<'_> {
             arcs,
             pulls,
         };
-        weighed.ratio = ratio(&weighed, self.picture.straightness);
-        Some(weighed)
+        evaluated.ratio = ratio(&evaluated, self.picture.straightness);
+        Some(evaluated)
     }
 
-    /// The match, with what it tells of the part's shape, and the odds that it is the part.
-    fn judged(&self, found: PartMatch) -> PartMatch {
-        let mut judged = found;
-        let (all, each) = SystematicOffset::new(self.camera, &judged.pose, &judged.pulls);
-        judged.systematic_offset = all;
-        for (pair, systematic_offset) in judged.pairs.iter_mut().zip(each) {
+    /// Completes a match with its residuals, its shape evidence and its prior odds.
+    fn scored(&self, found: PartMatch) -> PartMatch {
+        let mut scored = found;
+        let (all, each) = SystematicOffset::new(self.camera, &scored.pose, &scored.pulls);
+        scored.systematic_offset = all;
+        for (pair, systematic_offset) in scored.pairs.iter_mut().zip(each) {
             if let (Some(found), Some(systematic_offset)) = (&mut pair.found, systematic_offset) {
                 found.systematic_offset = systematic_offset;
             }
         }
-        judged.shape = ShapeEvidence::new(self.part, self.camera, &judged);
-        judged.framed = framed(self.picture, &judged.pairs);
-        judged.odds = odds(&judged, self.picture.straightness);
-        judged
+        scored.shape = ShapeEvidence::new(self.part, self.camera, &scored);
+        scored.framed = framed(self.picture, &scored.pairs);
+        scored.odds = odds(&scored, self.picture.straightness);
+        scored
     }
 
-    /// The match that is reached where one feature is left out, as long as that is likelier: where a wrong
-    /// edge is taken for a feature the others tell a better pose, and there the right edge may be near.
-    fn improved(&self, found: PartMatch) -> PartMatch {
+    /// The match after refinement without one feature, repeated as long as the ratio grows. Where a
+    /// wrong edge is assigned to a feature, the other features determine a better pose, and the
+    /// right edge may lie near its prediction there.
+    fn with_outliers_removed(&self, found: PartMatch) -> PartMatch {
         let camera = self.camera;
         let mut best = found;
         for _ in 0..IMPROVEMENTS {
@@ -196,19 +200,19 @@ impl Matcher<'_> {
     }
 }
 
-/// So many of the likeliest matches are improved.
+/// How many of the likeliest matches are improved.
 const IMPROVED: usize = 4;
-/// So often a match is improved at the most.
+/// How often a match is improved at most.
 const IMPROVEMENTS: usize = 8;
 
-/// How often what is visible is predicted again.
+/// How often the visible contours are predicted again at most.
 const ROUNDS: usize = 4;
-/// From this distance on, in pixels, an edge draws no longer.
+/// The scale of the robust loss: edges farther from a contour than this, in pixels, have no weight.
 const SCALE: f64 = 4.0;
-/// The least deviation of an edge, in pixels: that of the detector.
+/// The least standard deviation of an edge, in pixels: that of the detector.
 const MIN_RATE: f64 = 0.2;
 
-/// The matches at different poses, the likeliest of each.
+/// The likeliest match of each distinct pose.
 fn different(
     part: &SoughtPart<'_>,
     camera: &Pinhole,

@@ -1,4 +1,5 @@
-//! The part in the next picture of a sequence: from its last pose, or by looking for it anew.
+//! The tracker: finds the part in the next image of a sequence from its last pose, or by a new
+//! search.
 
 use crate::camera::Pinhole;
 use crate::hypothesis::{Hypothesis, REACHES, drawn, settled};
@@ -7,15 +8,15 @@ use crate::part::SoughtPart;
 use crate::verification::part_match::{PartMatch, SearchResult};
 use nalgebra::Isometry3;
 
-/// How far, in pixels, edges may have moved from picture to picture.
+/// The search radii, in pixels, for edges that moved between images.
 const MOVED: [f64; 3] = [24.0, 12.0, 6.0];
 
-/// How much likelier a part is where it was expected: the logarithm of how many other places were not
-/// looked at.
+/// The prior log-odds of a part at its expected position: the logarithm of the number of other
+/// positions that were not searched.
 const EXPECTED: f64 = 6.0;
 
 impl Matcher<'_> {
-    /// The match that is reached from the last pose; none if the part is lost.
+    /// The match found from the last pose; none if the part is lost.
     pub fn follow(&self, last: &Isometry3<f64>) -> Option<PartMatch> {
         let Self {
             part,
@@ -31,7 +32,7 @@ impl Matcher<'_> {
         };
         let reaches = [&MOVED[..], &REACHES[1..]].concat();
         let near = drawn(part, picture, camera, &start, &reaches)?;
-        // Where it is drawn to at once, and what is better about that.
+        // The pose after refinement, and the best one around it.
         let settled = settled(part, picture, camera, &near);
         let all = [near, settled].into_iter().filter_map(|h| {
             let mut found = self.matched(&h.pose)?;
@@ -42,7 +43,7 @@ impl Matcher<'_> {
         all.min_by(PartMatch::order)
     }
 
-    /// What became of a picture of a sequence: the match, and whether it was looked for anew.
+    /// The result for an image of a sequence, and whether the whole image was searched.
     pub fn next(&self, last: Option<&Isometry3<f64>>) -> (SearchResult, bool) {
         match last.and_then(|p| self.follow(p)) {
             Some(found) => {
@@ -57,7 +58,7 @@ impl Matcher<'_> {
     }
 }
 
-/// Whether the images of the part's probes have moved no farther than edges may have.
+/// Whether the images of the part's probe points moved by at most `FARTHEST`.
 fn is_near(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
@@ -70,5 +71,5 @@ fn is_near(
     })
 }
 
-/// How far, in pixels, the image of a point of the part may move from picture to picture.
+/// How far the image of a probe point may move between images, in pixels.
 const FARTHEST: f64 = 64.0;

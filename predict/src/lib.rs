@@ -1,10 +1,10 @@
-//! What a sensor and a detector will find of a part.
+//! Prediction of what a sensor and a detector find of a part.
 //!
-//! A [`PreparedPart`](prepared_part::PreparedPart) stands before a camera and under lights ([`setup`]).
-//! The visible contours, the boundaries of cast shadows and the outlines of highlights divide the
-//! image into regions ([`image_arcs`]). Pixels next to these get their grey levels ([`image`]). The
-//! detector ([`premio_detect`]) finds edges in them, and [`feature`] assigns each edge to the feature
-//! that it is the image of.
+//! A [`PreparedPart`](prepared_part::PreparedPart) stands in front of a camera and under lights
+//! ([`setup`]). The visible contours, the boundaries of cast shadows and the outlines of highlights
+//! divide the image into regions ([`image_arcs`]). Pixels next to these get their grey levels
+//! ([`image`]). The detector ([`premio_detect`]) finds edges in them, and [`feature`] assigns each
+//! edge to its feature.
 
 pub mod feature;
 pub mod image;

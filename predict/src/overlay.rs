@@ -1,5 +1,5 @@
-//! Predicted features as a drawing: found pieces coloured by their contrast, the rest dashed, each with
-//! why it is missing.
+//! Predicted features as a drawing: found pieces are coloured by their contrast, the rest is
+//! dashed, with the reason why it is missing.
 
 use crate::feature::detected_arc::DetectionState;
 use crate::prediction::{ArcGeometry, ArcLevel, Prediction};
@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// The contrast of the strongest colour, in grey levels.
 const STRONG: f64 = 128.0;
-/// The colours of contrasts from none to [`STRONG`]: viridis at equal steps (van der Walt and Smith
+/// The colours of contrasts from zero to [`STRONG`]: viridis at equal steps (van der Walt and Smith
 /// 2015).
 const COLOURS: [[u8; 3]; 5] = [
     [68, 1, 84],
@@ -16,7 +16,7 @@ const COLOURS: [[u8; 3]; 5] = [
     [94, 201, 98],
     [253, 231, 37],
 ];
-/// The colour of what is missing.
+/// The colour of missing pieces.
 pub const MISSING: [u8; 3] = [214, 39, 40];
 
 /// The colour of a contrast in grey levels.
@@ -42,7 +42,7 @@ pub struct OverlayStroke {
     pub arc: u32,
 }
 
-/// What is drawn of a prediction, as far as it is in the image.
+/// The lines of the overlay of a prediction within the image.
 pub fn strokes(prediction: &Prediction) -> Vec<OverlayStroke> {
     let size = prediction.image.setup.conditions.sensor.resolution;
     // The centre of the first pixel is at (0, 0).
@@ -78,7 +78,7 @@ impl Window {
                 continue;
             };
             match pieces.last_mut() {
-                // It goes on where the last one ended, at the same point of the line.
+                // It continues where the last one ended, at the same point of the line.
                 Some(piece) if piece.last() == Some(&a) => piece.push(b),
                 _ => pieces.push(vec![a, b]),
             }
@@ -167,26 +167,26 @@ fn part(points: &[[f64; 2]], [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     kept
 }
 
-/// The place of an arc's label: the middle of its line.
+/// The position of an arc's label: the middle of its line.
 pub fn label_place(arc: &ArcLevel) -> [f64; 2] {
     let points = points(&arc.geometry);
     let line = part(&points, [0.5 * arc.length, 0.5 * arc.length + 1.0]);
     line.first().or(points.first()).copied().unwrap_or_default()
 }
 
-/// The place of a label in the image.
+/// The position of a label in the image.
 fn shown_label(arc: &ArcLevel, size: [f64; 2]) -> [f64; 2] {
     let [x, y] = label_place(arc);
     [x.clamp(0.0, size[0]), y.clamp(0.0, size[1])]
 }
 
-/// The arcs of a prediction that are not whole, each with why.
+/// The arcs of a prediction that are not whole, each with the reason.
 pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
     let features = prediction
         .arcs
         .iter()
         .filter(|arc| !arc.smooth && arc.length > 0.0);
-    let told = features.filter_map(|arc| {
+    let labels = features.filter_map(|arc| {
         let reason = arc.reason?;
         let word = arc.source.word();
         Some((
@@ -194,7 +194,7 @@ pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
             format!("{}: {word} {}, {reason}", arc.id, arc.state.word()),
         ))
     });
-    told.collect()
+    labels.collect()
 }
 
 const STYLE: &str = "svg{background:#fff}path{fill:none;stroke-linecap:round;stroke-linejoin:round;stroke-width:2}\

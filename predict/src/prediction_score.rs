@@ -1,4 +1,4 @@
-//! How far a prediction agrees with what the detector finds in an image of the same setup.
+//! The agreement of a prediction with what the detector finds in an image of the same setup.
 
 use crate::feature::DetectedArc;
 use crate::feature::detected_arc::DetectionState;
@@ -8,19 +8,19 @@ use serde::Serialize;
 
 /// The name of the format.
 pub const SCHEMA: &str = "premio.comparison/1";
-/// How many bins a reliability diagram has.
+/// The number of bins of a reliability diagram.
 const BINS: usize = 10;
 
-/// A feature, as it is predicted and as it is found.
+/// A feature with its predicted and its found state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MatchedArc {
     /// The arc.
     pub arc: u32,
-    /// What it is the image of.
+    /// Its source.
     pub source: ArcSource,
     /// Its length in pixels.
     pub length: f64,
-    /// How likely each state is.
+    /// The probabilities of the states.
     pub chances: Chances,
     /// The state that is predicted.
     pub predicted: DetectionState,
@@ -32,10 +32,10 @@ pub struct MatchedArc {
     pub off: f64,
 }
 
-/// A bin of a reliability diagram: what is predicted with about the same chance.
+/// A bin of a reliability diagram: features with about the same predicted chance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Bin {
-    /// How many features.
+    /// The number of features.
     pub count: u32,
     /// The mean of the predicted chances of being whole.
     pub predicted: f64,
@@ -43,10 +43,10 @@ pub struct Bin {
     pub found: f64,
 }
 
-/// How far predictions agree with what is found.
+/// The agreement of predictions with detections.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PredictionScore {
-    /// How many features are compared.
+    /// The number of compared features.
     pub features: u32,
     /// By predicted and found state, in the order whole, broken, missed.
     pub table: [[u32; 3]; 3],
@@ -54,7 +54,7 @@ pub struct PredictionScore {
     pub same: f64,
     /// The Brier score over the three states, from 0, the best, to 2.
     pub brier: f64,
-    /// The share that is whole: in the predicted state, if all are predicted whole.
+    /// The share that is whole: the share in the predicted state if all are predicted whole.
     pub baseline_same: f64,
     /// The Brier score of predicting all whole.
     pub baseline_brier: f64,
@@ -62,7 +62,7 @@ pub struct PredictionScore {
     pub reliability: Vec<Bin>,
 }
 
-/// What is compared: features in the image that are long enough for the detector to keep.
+/// The compared features: those in the image that are long enough for the detector to keep.
 pub fn matches(arcs: &[ArcLevel], found: &[DetectedArc], shortest: f64) -> Vec<MatchedArc> {
     let features = arcs.iter().zip(found);
     features
@@ -123,7 +123,7 @@ impl PredictionScore {
     }
 }
 
-/// Brier's score of chances where one state is found (Monthly Weather Review 78, 1950).
+/// The Brier score of probabilities where one state is found (Monthly Weather Review 78, 1950).
 fn brier(chances: [f64; 3], found: DetectionState) -> f64 {
     let off = |state: DetectionState| {
         let is = f64::from(u8::from(state == found));

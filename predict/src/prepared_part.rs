@@ -13,7 +13,7 @@ use premio_visibility::ray_casting::{OriginIncidence, SightLine};
 use premio_visibility::scene::Scene;
 use std::f64::consts::PI;
 
-/// How many directions of the hemisphere are tried, and from how many points of a face at the most.
+/// The number of tested directions of the hemisphere, and the most points of a face.
 const DIRECTIONS: usize = 64;
 const POINTS: usize = 8;
 
@@ -32,12 +32,12 @@ pub struct PreparedPart<'a> {
     pub brep: &'a Brep,
     /// Its resolution.
     pub resolution: f64,
-    /// The middle of its box.
+    /// The centre of its box.
     pub centre: Point3<f64>,
     /// Half the diagonal of its box.
     pub radius: f64,
-    /// By face: f, the part of the hemisphere over it that the part itself does not block, weighted
-    /// by the cosine (Cook and Torrance 1982), on the average over the face.
+    /// By face: f, the share of the hemisphere over it that the part itself does not block,
+    /// weighted by the cosine (Cook and Torrance 1982), averaged over the face.
     pub unblocked_fraction: Vec<f64>,
 }
 
@@ -59,14 +59,14 @@ impl<'a> PreparedPart<'a> {
         Ok(subject)
     }
 
-    /// Whether a point is in the part's material, or on its boundary as far as that is known.
+    /// Whether a point is in the part's material, or on its boundary within the resolution.
     pub fn contains(&self, p: &Point3<f64>) -> bool {
         let near = (p - self.centre).norm() <= self.radius + self.resolution;
         near && contains(self.brep, p, self.resolution).unwrap_or(true)
     }
 }
 
-/// By face: the part of the hemisphere that is open.
+/// By face: the share of the hemisphere that is not blocked.
 fn unblocked_fraction(subject: &PreparedPart<'_>) -> Vec<f64> {
     let count = subject.brep.topology.faces.len();
     let away = Vector3::z() * (4.0 * subject.radius);
@@ -76,7 +76,8 @@ fn unblocked_fraction(subject: &PreparedPart<'_>) -> Vec<f64> {
         angle: PI / 8.0,
     };
     let mesh = tessellate(subject.brep, &accuracy, subject.resolution);
-    // A part without a mesh, or at no finite place, is taken to be open: the ambient term is small.
+    // A part without a mesh, or without a finite position, counts as unblocked: the ambient term is
+    // small.
     let (Ok(eye), Ok(mesh)) = (eye, mesh) else {
         return vec![1.0; count];
     };
@@ -121,7 +122,7 @@ fn open_part(subject: &PreparedPart<'_>, scene: &Scene<'_>, mesh: &Mesh, face: F
     }
 }
 
-/// Points of a face, spread over its area: the middles of triangles.
+/// Points of a face, spread over its area: the centroids of triangles.
 fn points(mesh: &Mesh, face: FaceId) -> Vec<Point3<f64>> {
     let own: Vec<(f64, Point3<f64>)> = mesh
         .triangles

@@ -1,8 +1,8 @@
-//! The full image, by a line of sight through every pixel: the same physics without arcs and regions,
-//! to hold predictions against.
+//! The full image, by a line of sight through every pixel: the same physics without arcs and
+//! regions, as a reference for predictions.
 //!
 //! A pixel is one sample where its corners and its middle show the same face in the same light, and
-//! else [`FINE`] × [`FINE`] samples.
+//! [`FINE`] × [`FINE`] samples elsewhere.
 
 use crate::image::blur::blur;
 use crate::image::response::respond;
@@ -11,10 +11,10 @@ use crate::image_arcs::RegionSample;
 use crate::setup::sensor::Sensor;
 use premio_detect::{Grey, PixelMask};
 
-/// How many samples a pixel next to a change has on a side.
+/// The number of samples per side of a pixel at a change.
 pub const FINE: usize = 8;
 
-/// Before the point spread, noise and steps: the levels of rows of an image.
+/// The levels of rows of an image, before the point spread, noise and steps.
 pub fn rows(shading: &Shading<'_>, width: usize, rows: std::ops::Range<usize>) -> Vec<f32> {
     let corner = |x: usize, y: usize| shading.cast([x as f64 - 0.5, y as f64 - 0.5]);
     let mut levels = Vec::with_capacity(width * rows.len());
@@ -39,7 +39,7 @@ pub fn rows(shading: &Shading<'_>, width: usize, rows: std::ops::Range<usize>) -
     levels
 }
 
-/// The image of rendered levels as the sensor tells it.
+/// The sensor's image of rendered levels.
 pub fn finished(levels: Vec<f32>, sensor: &Sensor, seed: u64) -> Grey {
     let [width, height] = sensor.resolution;
     let mut image = Grey {

@@ -1,5 +1,5 @@
-//! Where camera and light are best: the setups of spheres, scored, and the best of them moved as long as
-//! that makes them better.
+//! Sensor planning: the best directions of camera and light. The setups of spheres are scored, and
+//! the best of them are moved as long as their score improves.
 
 use crate::feature::detected_arc::DetectionState;
 use crate::image::shading::Finishes;
@@ -16,46 +16,46 @@ use std::collections::BTreeMap;
 /// The name of the format.
 pub const SCHEMA: &str = "premio.advice/1";
 
-/// What is sought.
+/// The goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Goal {
-    /// The most features that the detector may be expected to find.
+    /// The greatest expected number of found features.
     #[default]
     Features,
-    /// The least deviation of the pose.
+    /// The least standard deviation of the pose.
     Pose,
 }
 
-/// Directions of a camera and a light from the part's middle.
+/// Directions of a camera and a light from the part's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placing {
     /// Of the camera.
     pub view: Vector3<f64>,
-    /// Of the light that moves, if one does.
+    /// Of the moving light, if there is one.
     pub light: Option<Vector3<f64>>,
 }
 
-/// How good a setup is.
+/// The score of a setup.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// How many features may be expected to be found, whole or in part.
+    /// The expected number of features that are found, whole or in part.
     pub expected: f64,
-    /// How many are visible.
+    /// The number of visible features.
     pub visible: usize,
-    /// The deviation of the pose: turn in radians, move in the part's unit.
+    /// The standard deviations of the pose: rotation in radians, translation in the part's unit.
     pub pose: Option<[f64; 2]>,
-    /// By feature: how likely it is found.
+    /// By feature: the probability that it is found.
     #[serde(skip)]
     pub chances: BTreeMap<ArcSource, f64>,
 }
 
 impl Score {
-    /// What a goal makes of it: more is better.
+    /// Its value for a goal: greater is better.
     pub fn value(&self, goal: Goal, radius: f64) -> f64 {
         match goal {
             Goal::Features => self.expected,
-            // By how much a point at the part's radius is off.
+            // The standard deviation of a point at the part's radius.
             Goal::Pose => self
                 .pose
                 .map_or(f64::NEG_INFINITY, |[turn, by]| -turn.mul_add(radius, by)),
@@ -63,7 +63,7 @@ impl Score {
     }
 }
 
-/// What scores setups of a part.
+/// The scorer of a part's setups.
 #[derive(Clone, Copy, Debug)]
 pub struct SetupScorer<'s> {
     /// The part.
@@ -72,12 +72,12 @@ pub struct SetupScorer<'s> {
     pub finishes: &'s Finishes,
     /// The setups.
     pub setups: &'s Setups,
-    /// What is sought.
+    /// The goal.
     pub goal: Goal,
 }
 
 impl SetupScorer<'_> {
-    /// The score of a setup; none where nothing is seen.
+    /// The score of a setup; an error where nothing is visible.
     pub fn score(&self, placing: &Placing, memory: &mut Memory) -> Result<Score, StageError> {
         // One seed for all: no setup is better than another by its noise.
         let setup = self
@@ -86,12 +86,12 @@ impl SetupScorer<'_> {
         with_draft(self.subject, Some(self.finishes), &setup, memory, scored)
     }
 
-    /// What the goal makes of a setup.
+    /// The value of a score for the goal.
     pub fn value(&self, score: &Score) -> f64 {
         score.value(self.goal, self.subject.radius)
     }
 
-    /// The setup moved as long as that makes it better, by steps from an angle (radians) down to a
+    /// Moves the setup as long as its score improves, by steps from an angle (radians) down to a
     /// sixteenth of it.
     pub fn refined(
         &self,
@@ -139,7 +139,7 @@ fn scored(draft: &PredictedImage<'_>) -> Score {
     }
 }
 
-/// Setups next to one: the camera, or the light, moved by a step in four directions.
+/// The neighbours of a setup: the camera, or the light, moved by a step in four directions.
 fn neighbours(placing: &Placing, step: f64) -> Vec<Placing> {
     let moved = |d: &Vector3<f64>| {
         let across = d.cross(&Vector3::ith(d.abs().imin(), 1.0)).normalize();

@@ -35,20 +35,20 @@ pub struct Camera {
     near: Option<f64>,
 }
 
-/// From where a camera looks.
+/// The position of a camera.
 #[derive(Clone, Debug, PartialEq)]
 enum Sight {
-    /// From a direction, at the middle.
+    /// From a direction, towards the middle.
     Direction([f64; 3]),
     /// A named view of the middle.
     Standard(StandardView),
-    /// From an eye at a target, or at the middle; orthographic without a focal length.
+    /// From an eye towards a target, or towards the middle; orthographic without a focal length.
     Eye {
         eye: [f64; 3],
         target: Option<[f64; 3]>,
         focal: Option<f64>,
     },
-    /// Whatever the solid is.
+    /// Independent of the solid.
     Fixed(ViewCamera),
 }
 
@@ -61,8 +61,8 @@ impl Camera {
         }
     }
 
-    /// Parallel projection from a direction: the vector points from the solid to the eye. The length
-    /// does not count.
+    /// Parallel projection from a direction: the vector points from the solid to the eye. The
+    /// length does not count.
     ///
     /// # Examples
     ///
@@ -135,7 +135,7 @@ impl Camera {
     /// OpenCV's camera: image = K (R x + t), in pixels, y down. The matrices are given row by row.
     ///
     /// # Errors
-    /// K is not upper triangular, or R is no rotation.
+    /// K is not upper triangular, or R is not a rotation.
     ///
     /// # Examples
     ///
@@ -162,7 +162,7 @@ impl Camera {
     /// The camera of a JSON text, in the format of `premio contours --camera`.
     ///
     /// # Errors
-    /// The text is no camera.
+    /// The text is not a valid camera.
     ///
     /// # Examples
     ///
@@ -196,8 +196,8 @@ impl Camera {
         Self::from_json(&text)
     }
 
-    /// The direction that is up in the image, as far as it can be; by default z. Of a camera that was
-    /// read it is fixed.
+    /// The direction that is up in the image, as far as possible; by default z. A camera that was
+    /// read keeps its own.
     ///
     /// # Examples
     ///
@@ -256,7 +256,7 @@ impl Camera {
         self
     }
 
-    /// Cuts away what is nearer than a depth along the optical axis.
+    /// Sets the near plane: contours nearer than this depth along the optical axis are cut away.
     ///
     /// # Examples
     ///
@@ -275,7 +275,7 @@ impl Camera {
         self
     }
 
-    /// The camera for a solid, with its place.
+    /// The camera for a solid, with its position.
     ///
     /// # Errors
     /// A vector is zero or not finite, or the target is the eye.

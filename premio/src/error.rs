@@ -1,4 +1,4 @@
-//! What can be wrong.
+//! The error type.
 
 use crate::expression::ExpressionError;
 use crate::number::NumberError;
@@ -33,7 +33,7 @@ use std::path::PathBuf;
 /// ```
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What can be wrong with a call.
+/// The error of a call.
 ///
 /// Each variant carries the error of the step that failed.
 ///
@@ -49,10 +49,10 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number is not finite, or a text is no number.
+    /// A number is not finite, or a text is not a number.
     #[error(transparent)]
     Number(#[from] NumberError),
-    /// A primitive or a motion of an expression is none.
+    /// A primitive or a motion of an expression is invalid.
     #[error(transparent)]
     Expression(#[from] ExpressionError),
     /// An expression is beyond a limit.
@@ -67,16 +67,16 @@ pub enum Error {
     /// The boundary cannot be determined.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    /// The numbers of views are too coarse for the solid.
+    /// The precision of views is too low for the solid.
     #[error(
-        "surfaces lie so nearly along one another that f64 do not tell them apart: the boundary is \
-         known, but no view of it"
+        "surfaces are so nearly coincident that f64 cannot separate them: the boundary is known, \
+         but views need more precision"
     )]
     NoView,
-    /// A camera is none.
+    /// A camera is invalid.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// A camera sees nothing from its place.
+    /// A camera has no view from its position.
     #[error(transparent)]
     View(#[from] ViewError),
     /// Views do not fit on a sheet.
@@ -95,19 +95,19 @@ pub enum Error {
         what: &'static str,
         /// The value that was given.
         asked: f64,
-        /// The least that is taken.
+        /// The least valid value.
         least: f64,
     },
-    /// A setup is none.
+    /// A setup is invalid.
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// Nothing can be predicted of the solid in a setup.
     #[error(transparent)]
     Stage(#[from] StageError),
-    /// A text is no model.
+    /// A text is not a valid model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A text is no camera of a picture.
+    /// A text is not a valid camera of a picture.
     #[error(transparent)]
     Pinhole(#[from] PinholeError),
     /// A picture cannot be read or written.
@@ -138,15 +138,15 @@ pub enum Error {
         /// Why.
         source: io::Error,
     },
-    /// The ending of a file names no format that is known.
+    /// The ending of a file names no known format.
     #[error("{}: found a file of an unknown kind, expected one that ends in {expected}", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// The endings that are known.
+        /// The known endings.
         expected: &'static str,
     },
-    /// A value is no JSON.
+    /// A value cannot be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
     /// A solid has no faces, so there is nothing to see or to find.

@@ -22,7 +22,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Why an expression is no solid.
+/// Why an expression is not a solid.
 ///
 /// # Examples
 ///
@@ -38,10 +38,10 @@ pub enum ExpressionError {
     /// A length or an angle is not a number.
     #[error(transparent)]
     Number(#[from] NumberError),
-    /// A primitive with these lengths is no solid.
+    /// A primitive with these lengths is not a solid.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),
-    /// A motion is none.
+    /// A motion is invalid.
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// A factor is not above zero.
@@ -51,12 +51,12 @@ pub enum ExpressionError {
 
 /// A solid as an expression of primitives, set operations and motions.
 ///
-/// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection. All
-/// three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression is
-/// `Send` and `Sync`.
+/// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection.
+/// All three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression
+/// is `Send` and `Sync`.
 ///
-/// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an error
-/// in [`Expression::evaluate`], so that expressions need no `?`.
+/// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an
+/// error in [`Expression::evaluate`], so that expressions need no `?`.
 ///
 /// # Examples
 ///
@@ -82,7 +82,7 @@ enum Node {
     Described(Box<Description>),
 }
 
-/// What was read.
+/// A description that was read.
 struct Description {
     program: Program,
     record: DescriptionRecord,
@@ -126,7 +126,7 @@ impl Drop for Node {
     }
 }
 
-/// Shows how many primitives an expression has.
+/// Shows the number of primitives.
 impl fmt::Debug for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
@@ -281,11 +281,11 @@ impl Expression {
         self.rotate([0, 0, 1], degrees)
     }
 
-    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may have
-    /// any length but zero.
+    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may
+    /// have any length but zero.
     ///
-    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a rational
-    /// rotation next to it is taken, as by the readers of descriptions.
+    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a
+    /// rational rotation next to it is taken, as by the readers of descriptions.
     ///
     /// # Examples
     ///
@@ -349,7 +349,7 @@ impl Expression {
         })
     }
 
-    /// What the reader noted, of all descriptions that the expression was made from.
+    /// The notes of the reader on all descriptions that the expression was made from.
     ///
     /// # Examples
     ///
@@ -411,7 +411,7 @@ impl Expression {
     /// The tree of set operations, with every motion at its leaves.
     ///
     /// # Errors
-    /// A number, a primitive or a motion is none, or the tree is beyond a limit.
+    /// A number, a primitive or a motion is invalid, or the tree is beyond a limit.
     ///
     /// # Examples
     ///
@@ -434,7 +434,7 @@ impl Expression {
     /// The exact boundary, with the default options.
     ///
     /// # Errors
-    /// A number, a primitive or a motion is none, or the boundary is beyond a stated limit.
+    /// A number, a primitive or a motion is invalid, or the boundary is beyond a stated limit.
     ///
     /// # Examples
     ///
@@ -503,10 +503,10 @@ impl Expression {
 
     /// The expression as a description in PADL, as the tree's JSON or as `.csg`.
     ///
-    /// A number that the language cannot hold is written as the nearest f64.
+    /// A number that the language cannot express is written as the nearest f64.
     ///
     /// # Errors
-    /// The expression is none, the language is read only, or the text would be too long.
+    /// The expression is invalid, the language is read only, or the text would be too long.
     ///
     /// # Examples
     ///

@@ -5,8 +5,8 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Writes a file next to its place and renames it: nobody ever sees half of it. A device or a pipe is
-/// written to, not replaced.
+/// Writes a temporary file next to the target and renames it: nobody ever sees a partial file. A
+/// device or a pipe is written to, not replaced.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -30,7 +30,7 @@ pub fn write_whole(bytes: impl AsRef<[u8]>, path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// A temporary file next to its place, with all its bytes. `persist` puts it there.
+/// A temporary file next to the target, with all its bytes. `persist` renames it to the target.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -66,10 +66,10 @@ pub fn is_no_file(target: &Path) -> bool {
     fs::metadata(target).is_ok_and(|m| !m.is_file())
 }
 
-/// So many symbolic links may lead to a file that is not there yet.
+/// The most symbolic links that may lead to a file that does not exist yet.
 const LINKS: usize = 40;
 
-/// The file behind symbolic links, which may not be there yet.
+/// The target of symbolic links, which may not exist yet.
 ///
 /// # Errors
 /// There are too many links, or one cannot be followed.
@@ -100,7 +100,7 @@ pub fn target(path: &Path) -> io::Result<PathBuf> {
 /// An empty temporary file in the folder of another, with the permissions of any new file.
 ///
 /// # Errors
-/// The folder takes no file.
+/// No file can be created in the folder.
 ///
 /// # Examples
 ///

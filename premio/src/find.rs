@@ -1,4 +1,4 @@
-//! Where a solid is in pictures.
+//! Finding a solid in pictures.
 
 use crate::model::Model;
 use crate::picture::{PictureError, PictureFormat, draw_match};
@@ -17,9 +17,10 @@ use premio_matching::verification::part_match::{PartMatch, SearchOptions, Search
 use std::fmt;
 use std::time::Instant;
 
-/// Looks for a solid in pictures.
+/// Finds a solid in pictures.
 ///
-/// A finder prepares the solid once: edges, symmetries, chains. It then takes any number of pictures.
+/// A finder prepares the solid once: edges, symmetries, chains. It then takes any number of
+/// pictures.
 ///
 /// # Examples
 ///
@@ -43,7 +44,7 @@ pub struct PartFinder<'s> {
     name: String,
 }
 
-/// Shows how it detects and searches.
+/// Shows the detector and the search options.
 impl fmt::Debug for PartFinder<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("PartFinder")
@@ -55,10 +56,10 @@ impl fmt::Debug for PartFinder<'_> {
 }
 
 impl<'s> PartFinder<'s> {
-    /// A finder of a solid of which no model is known.
+    /// A finder of a solid without a model.
     ///
     /// # Errors
-    /// The solid is empty, or f64 do not tell its surfaces apart.
+    /// The solid is empty, or f64 cannot separate its surfaces.
     ///
     /// # Examples
     ///
@@ -73,7 +74,8 @@ impl<'s> PartFinder<'s> {
         Self::with_prior(solid, DetectabilityPrior::nothing(), detector())
     }
 
-    /// A finder of a solid with its model. Features are detected as the model's setups say.
+    /// A finder of a solid with its model. Features are detected with the detector of the model's
+    /// setups.
     ///
     /// # Errors
     /// As [`PartFinder::new`].
@@ -102,7 +104,7 @@ impl<'s> PartFinder<'s> {
         Ok(finder.with_name(solid.expression().name()))
     }
 
-    /// A finder of a boundary with its resolution, from what is known of its features.
+    /// A finder of a boundary with its resolution, from the detectability of its features.
     ///
     /// # Errors
     /// There are no faces.
@@ -137,7 +139,7 @@ impl<'s> PartFinder<'s> {
         })
     }
 
-    /// What reports call the solid.
+    /// Sets the name of the solid in reports.
     ///
     /// # Examples
     ///
@@ -155,7 +157,7 @@ impl<'s> PartFinder<'s> {
         self
     }
 
-    /// Detects features in another way.
+    /// Sets the detector of features.
     ///
     /// # Examples
     ///
@@ -174,7 +176,7 @@ impl<'s> PartFinder<'s> {
         self
     }
 
-    /// Searches correspondences in another way.
+    /// Sets the options of the search for correspondences.
     ///
     /// # Examples
     ///
@@ -193,7 +195,7 @@ impl<'s> PartFinder<'s> {
         self
     }
 
-    /// Looks for the solid in a picture, wherever it may be.
+    /// Searches the whole picture for the solid.
     ///
     /// # Errors
     /// The camera did not take a picture of this size.
@@ -216,8 +218,8 @@ impl<'s> PartFinder<'s> {
         }))
     }
 
-    /// Looks for the solid in a picture in the way of a function: the search result, and whether it was
-    /// looked for anew.
+    /// Searches a picture with a function, which returns the search result, and for a sequence
+    /// whether the whole picture was searched.
     ///
     /// # Examples
     ///
@@ -285,8 +287,8 @@ impl<'s> PartFinder<'s> {
     }
 }
 
-/// Follows a solid through the pictures of a sequence: from its last pose, and where it is lost, by
-/// looking for it anew.
+/// Follows a solid through the pictures of a sequence: from its last pose, or by a search of the
+/// whole picture where it is lost.
 ///
 /// # Examples
 ///
@@ -373,7 +375,7 @@ impl PartTracker<'_> {
     }
 }
 
-/// What was found of a solid in a picture.
+/// The result of a search for a solid in a picture.
 ///
 /// # Examples
 ///
@@ -413,7 +415,7 @@ impl PictureMatch {
         self.report.found
     }
 
-    /// How likely the solid is there.
+    /// The probability that the solid is there.
     ///
     /// # Examples
     ///
@@ -430,7 +432,7 @@ impl PictureMatch {
         self.report.probability
     }
 
-    /// The pose: x_camera = R x + t. Of what is not found, the likeliest.
+    /// The pose: x_camera = R x + t; the likeliest one if the solid is not found.
     ///
     /// # Examples
     ///
@@ -481,7 +483,7 @@ impl PictureMatch {
         self.result.best()
     }
 
-    /// What tells for and against the likeliest match, in words.
+    /// The evidence for and against the likeliest match, in words.
     ///
     /// # Examples
     ///
@@ -498,9 +500,8 @@ impl PictureMatch {
         explained(self.best(), &self.report)
     }
 
-    /// The bytes of the picture with the likeliest match drawn on it: contours green where they are
-    /// found, red and dashed where they are missed, the segments that they are in blue. None without a
-    /// match.
+    /// The bytes of the picture with the likeliest match drawn on it: found contours green, missed
+    /// ones red and dashed, their segments blue. None without a match.
     ///
     /// # Errors
     /// The picture cannot be encoded.
@@ -523,7 +524,7 @@ impl PictureMatch {
 }
 
 impl Solid {
-    /// Looks for the solid in a picture, without a model.
+    /// Finds the solid in a picture, without a model.
     ///
     /// For several pictures, make one [`PartFinder`].
     ///

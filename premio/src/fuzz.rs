@@ -1,4 +1,4 @@
-//! Holding another kernel against random and realistic parts.
+//! Comparison of another kernel with this one on random and realistic parts.
 
 use crate::progress::Progress;
 use crate::{Expression, Result};
@@ -12,7 +12,7 @@ use std::ops::Range;
 
 pub use premio_verify::generator::profile::Profile;
 
-/// The part of a profile and a seed. They are one part, on every machine.
+/// The part of a profile and a seed. It is the same part on every machine.
 ///
 /// # Examples
 ///
@@ -31,7 +31,7 @@ fn expression(model: &PartModel) -> Result<Expression> {
     crate::read_text(&write(model, write::Format::Json), Format::Json)
 }
 
-/// What another kernel says of a part.
+/// The measures of a part by another kernel.
 ///
 /// # Examples
 ///
@@ -62,7 +62,7 @@ impl KernelMeasures {
     }
 }
 
-/// How another kernel is held against parts.
+/// The options of a comparison with another kernel.
 ///
 /// # Examples
 ///
@@ -76,9 +76,9 @@ impl KernelMeasures {
 pub struct KernelTrial {
     /// The kind of parts.
     pub profile: Profile,
-    /// The relative difference of volumes and areas that is let pass.
+    /// The tolerance: the relative difference of volumes and areas that is accepted.
     pub tolerance: f64,
-    /// How many smaller parts are tried at the most, to make one that fails small.
+    /// The most smaller parts that are tried to shrink one that fails.
     pub tries: usize,
 }
 
@@ -100,11 +100,11 @@ impl KernelTrial {
         }
     }
 
-    /// Gives a kernel the parts of a range of seeds. A step of the progress is a part.
+    /// Runs a kernel on the parts of a range of seeds. A step of the progress is a part.
     ///
-    /// A part counts only where the answer here passes its own checks: the rules of the boundary, the
-    /// volume by rays and the sums of volumes. A part on which the kernel differs is made smaller as
-    /// long as it differs.
+    /// A part counts only where the result of this kernel passes its own checks: the rules of the
+    /// boundary, the volume by rays and the sums of volumes. A part on which the kernel differs is
+    /// shrunk as long as it differs.
     ///
     /// # Errors
     /// The work was cancelled.
@@ -189,7 +189,7 @@ impl KernelTrial {
     }
 }
 
-/// How many rays measure the volume of a part.
+/// The number of rays that measure the volume of a part.
 const RAYS: u32 = 500;
 
 enum Judgement {
@@ -198,7 +198,7 @@ enum Judgement {
     Differs(KernelDifference),
 }
 
-/// Where a kernel says something else.
+/// A difference between the kernels.
 ///
 /// # Examples
 ///
@@ -214,13 +214,13 @@ enum Judgement {
 /// ```
 #[derive(Clone, Debug)]
 pub struct KernelDifference {
-    /// The measures here.
+    /// The measures of this kernel.
     pub expected: TrialMeasures,
-    /// What the kernel says, or why it says nothing.
+    /// The measures of the other kernel, or why it has none.
     pub found: Result<KernelMeasures, String>,
 }
 
-/// A part on which a kernel differs, as small as it still does.
+/// A part on which a kernel differs, shrunk as far as it still differs.
 ///
 /// # Examples
 ///
@@ -242,7 +242,7 @@ pub struct KernelFailure {
     pub seed: u64,
     /// The part.
     pub part: Expression,
-    /// What the kernel says of it.
+    /// The difference.
     pub difference: KernelDifference,
 }
 
@@ -261,7 +261,7 @@ impl fmt::Display for KernelFailure {
     }
 }
 
-/// What came of the parts.
+/// The result of a comparison.
 ///
 /// # Examples
 ///
@@ -270,9 +270,10 @@ impl fmt::Display for KernelFailure {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct KernelReport {
-    /// On how many parts the kernel agrees.
+    /// The number of parts on which the kernel agrees.
     pub agreed: usize,
-    /// How many parts are not counted: beyond a limit, or in doubt here.
+    /// The number of parts that are not counted: beyond a limit, or failing this kernel's own
+    /// checks.
     pub skipped: usize,
     /// The parts on which it differs.
     pub failures: Vec<KernelFailure>,

@@ -19,28 +19,29 @@
 //! # A tour
 //!
 //! 1. An [`Expression`] says what a solid is. The functions [`block`], [`wedge`], [`cylinder`],
-//!    [`cone`], [`frustum`], [`sphere`] and [`torus`] make primitives; `+`, `-` and `&` combine them;
-//!    [`translate`](Expression::translate), [`rotate_x`](Expression::rotate_x) and the like move them.
-//!    [`read`] makes an expression of a file. Lengths are exact numbers, see [`ExactNumber`]: `0.1` is
-//!    one tenth.
-//! 2. [`Expression::evaluate`] makes a [`Solid`]: its exact boundary. It has measures, faces, edges and
-//!    vertices with their surfaces and curves, self-checks, meshes and files.
-//! 3. [`Solid::view`] makes a [`View`] for a [`Camera`]: arcs of edges and limbs, each with its curve in
-//!    the image, its curve in space and the number of faces that hide it.
+//!    [`cone`], [`frustum`], [`sphere`] and [`torus`] make primitives; `+`, `-` and `&` combine
+//!    them; [`translate`](Expression::translate), [`rotate_x`](Expression::rotate_x) and the like
+//!    move them. [`read`] makes an expression of a file. Lengths are exact numbers, see
+//!    [`ExactNumber`]: `0.1` is one tenth.
+//! 2. [`Expression::evaluate`] makes a [`Solid`]: its exact boundary. It has measures, faces, edges
+//!    and vertices with their surfaces and curves, self-checks, meshes and files.
+//! 3. [`Solid::view`] makes a [`View`] for a [`Camera`]: arcs of edges and limbs, each with its
+//!    curve in the image, its curve in space and the number of faces that hide it.
 //! 4. [`Solid::predict`] says which features a detector finds in a [`Setup`] of camera, lights and
 //!    sensor. [`Model::train`] sums up many setups.
-//! 5. [`PartFinder`] looks for a solid in pictures. A [`PartTracker`] follows it through a sequence.
+//! 5. [`PartFinder`] looks for a solid in pictures. A [`PartTracker`] follows it through a
+//!    sequence.
 //!
 //! # Errors, progress, threads
 //!
-//! Every call that can fail returns [`Error`]. Long work takes a [`Progress`]: a callback for its steps
-//! and a [`CancelToken`]. Solids, views and expressions are `Send` and `Sync`, never change, and are
-//! cheap to clone.
+//! Every call that can fail returns [`Error`]. Long work takes a [`Progress`]: a callback for its
+//! steps and a [`CancelToken`]. Solids, views and expressions are `Send` and `Sync`, never change,
+//! and are cheap to clone.
 //!
 //! # Units
 //!
-//! A length has no unit before it is written: [`ExportSettings::unit`] and [`SheetOptions::unit`] say
-//! what 1 is. Angles are degrees.
+//! A length has no unit before it is written: [`ExportSettings::unit`] and [`SheetOptions::unit`]
+//! say what 1 is. Angles are degrees.
 //!
 //! # Which crate is for what
 //!

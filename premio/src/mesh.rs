@@ -1,4 +1,4 @@
-//! Triangles that follow the boundary.
+//! Triangulation of the boundary.
 
 use crate::topology::FaceRef;
 use crate::{Error, Result, Solid};
@@ -7,8 +7,8 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
 use std::fmt;
 
-/// Triangles of a solid, within a stated distance of its boundary. Every side of a triangle is a side
-/// of exactly one other, run the other way.
+/// Triangles of a solid, within a stated distance of its boundary. Every side of a triangle is also
+/// a side, in the opposite direction, of exactly one other triangle.
 ///
 /// # Examples
 ///
@@ -74,7 +74,7 @@ impl TriangleMesh {
         facets.map(|f| f.normals.map(Into::into)).collect()
     }
 
-    /// The face that each triangle follows.
+    /// The face that each triangle approximates.
     ///
     /// # Examples
     ///
@@ -105,12 +105,12 @@ impl TriangleMesh {
     }
 }
 
-/// The finest triangles that are made: of the solid's size, and in degrees. A circle has some thousand
-/// chords then.
+/// The finest triangulation: relative to the solid's size, and in degrees. A circle then has some
+/// thousand chords.
 const FINEST_DEVIATION: f64 = 1.0 / 16_777_216.0;
 const FINEST_ANGLE: f64 = 1.0 / 16.0;
 
-/// How finely triangles follow a boundary.
+/// The fineness of a triangulation.
 ///
 /// # Examples
 ///
@@ -171,7 +171,7 @@ impl Solid {
         Ok(TriangleMesh { solid, facets })
     }
 
-    /// The triangles that files are written of.
+    /// The triangles that are written to files.
     pub(crate) fn facets(&self, fineness: &Fineness) -> Result<Facets> {
         let size = self.extent().1;
         self.check_fineness(fineness, size)?;
@@ -183,7 +183,7 @@ impl Solid {
         Ok(Facets::new(self.brep(), &accuracy, resolution)?)
     }
 
-    /// Refuses what would take more triangles than anybody waits for; flat faces take few at any
+    /// Refuses a fineness that would take far too many triangles; flat faces take few at any
     /// fineness.
     fn check_fineness(&self, fineness: &Fineness, size: f64) -> Result<()> {
         let mut faces = self.faces();

@@ -1,9 +1,10 @@
-//! Models of a solid: what predictions over many setups come to.
+//! Models of a solid: the summary of predictions over many setups.
 
 mod run;
 mod shard;
 
-/// Shards of a model: the observations of a range of setups in a file, for runs on several machines.
+/// Shards of a model: the observations of a range of setups in a file, for runs on several
+/// machines.
 ///
 /// [`Model::train`](crate::Model::train) needs none of this.
 pub mod shards {
@@ -18,7 +19,7 @@ pub mod shards {
     /// The description of a solid that a model carries.
     ///
     /// # Errors
-    /// No description language holds the solid's numbers exactly.
+    /// No description language can express the solid's numbers exactly.
     ///
     /// # Examples
     ///
@@ -49,8 +50,8 @@ pub use run::SetupObserver;
 pub use shard::ShardError;
 use std::path::Path;
 
-/// The model of a solid: how likely each feature is found, how far it is off, and which features are
-/// found together, over the setups of a viewing and an illumination sphere.
+/// The model of a solid over the setups of a viewing and an illumination sphere: the detectability,
+/// reliability and accuracy of each feature, and the co-detection of features.
 ///
 /// A model carries the description of its solid.
 ///
@@ -73,10 +74,10 @@ pub struct Model {
 }
 
 impl Model {
-    /// Predicts all setups and sums them up. A step of the progress is a setup.
+    /// Predicts all setups and summarises them. A step of the progress is a setup.
     ///
     /// # Errors
-    /// The solid is empty, a material is not known, no description holds the solid's numbers exactly,
+    /// The solid is empty, a material is not known, no description can express the solid's numbers,
     /// or the work was cancelled.
     ///
     /// # Examples
@@ -129,7 +130,7 @@ impl Model {
     /// The model of a text (`premio.model/1`).
     ///
     /// # Errors
-    /// The text is no model, says what does not add up, or is not as it was written.
+    /// The text is not a model, is inconsistent, or was changed after it was written.
     ///
     /// # Examples
     ///
@@ -198,7 +199,7 @@ impl Model {
         &self.text
     }
 
-    /// What the model is of.
+    /// The head of the model.
     ///
     /// # Examples
     ///
@@ -237,7 +238,7 @@ impl Model {
     /// Evaluates the solid that the model carries.
     ///
     /// # Errors
-    /// The description is none, or the model is of another solid.
+    /// The description is invalid, or the model is of another solid.
     ///
     /// # Examples
     ///

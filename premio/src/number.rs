@@ -1,4 +1,4 @@
-//! Exact numbers from what a caller has.
+//! Exact numbers from the types of a caller.
 
 use crate::Rational;
 use premio_kernel::number::rational::{self, DecimalError};
@@ -67,7 +67,7 @@ impl ExactNumber {
     /// The number.
     ///
     /// # Errors
-    /// The number was made from an f64 that is not finite, or from a text that is no number.
+    /// The number was made from an f64 that is not finite, or from a text that is not a number.
     ///
     /// # Examples
     ///

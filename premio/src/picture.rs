@@ -31,10 +31,11 @@ use std::path::Path;
 /// ```
 pub const MAX_PIXELS: u64 = 100_000_000;
 
-/// Reads a grey picture: PNG, PGM or JPEG; a picture in colours by its luma. Levels are from 0 to 255.
+/// Reads a grey picture: PNG, PGM or JPEG; a picture in colours by its luma. Levels are from 0 to
+/// 255.
 ///
 /// # Errors
-/// The file cannot be read, is no picture, or not all of one, or has more than [`MAX_PIXELS`] pixels.
+/// The file cannot be read, is not a complete picture, or has more than [`MAX_PIXELS`] pixels.
 ///
 /// # Examples
 ///
@@ -54,10 +55,10 @@ pub fn read_picture(path: impl AsRef<Path>) -> Result<Grey> {
     Ok(decode_picture(&bytes, MAX_PIXELS)?)
 }
 
-/// The grey picture in the bytes of a file, of at most so many pixels.
+/// The grey picture in the bytes of a file, up to a number of pixels.
 ///
 /// # Errors
-/// The bytes are no picture, or not all of one, or there are more pixels than the limit, or none.
+/// The bytes are not a complete picture, or there are more pixels than the limit, or none.
 ///
 /// # Examples
 ///
@@ -77,7 +78,7 @@ pub fn decode_picture(bytes: &[u8], max_pixels: u64) -> Result<Grey, PictureErro
     })
 }
 
-/// Why a picture is not read or written.
+/// Why a picture cannot be read or written.
 ///
 /// # Examples
 ///
@@ -106,7 +107,7 @@ pub enum PictureError {
         width: usize,
         /// The height in pixels.
         height: usize,
-        /// The most pixels that are taken.
+        /// The limit of pixels.
         limit: u64,
     },
     /// A PNG is damaged.
@@ -126,7 +127,7 @@ pub enum PictureError {
     Format,
 }
 
-/// A pixel has at most so many bytes as it is decoded, and a picture so many besides.
+/// The most bytes of memory for decoding: for each pixel, and for each picture.
 const LARGEST_PIXEL: u64 = 16;
 const SLACK: u64 = 1 << 24;
 
@@ -147,7 +148,8 @@ fn check_size([width, height]: [usize; 2], limit: u64) -> Result<(), PictureErro
     }
 }
 
-/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or damage.
+/// Reads the picture in a file's bytes. The format's checksums and codes must show no loss or
+/// damage.
 fn decode(bytes: &[u8], limit: u64) -> Result<Raster, PictureError> {
     if bytes.starts_with(png::SIGNATURE) {
         png::check_chunks(bytes)?;
@@ -209,7 +211,7 @@ impl PictureFormat {
     }
 }
 
-/// The bytes of a grey picture: of 8 bits for up to 256 levels, else of 16.
+/// The bytes of a grey picture: with 8 bits for up to 256 levels, otherwise with 16.
 ///
 /// # Errors
 /// The picture has no pixels.
@@ -246,8 +248,8 @@ pub fn encode_picture(
     encode(&raster, format)
 }
 
-/// Writes a grey picture of up to 256 levels as PNG or PGM, by the file's ending. It appears whole or
-/// not at all.
+/// Writes a grey picture of up to 256 levels as PNG or PGM, by the file's ending. It appears whole
+/// or not at all.
 ///
 /// # Errors
 /// The ending names no format, the picture has no pixels, or the file cannot be written.
@@ -276,8 +278,8 @@ fn encode(raster: &Raster, format: PictureFormat) -> Result<Vec<u8>, PictureErro
     }
 }
 
-/// The bytes of a picture with a prediction drawn on it: the arcs coloured by their contrast, those that
-/// are missed dashed, with the reasons below.
+/// The bytes of a picture with a prediction drawn on it: arcs are coloured by their contrast,
+/// missed ones are dashed, with the reasons below.
 ///
 /// # Errors
 /// The picture cannot be encoded.
@@ -302,12 +304,12 @@ pub fn draw_prediction(
     encode(&picture(prediction, below).into_raster(), format)
 }
 
-/// The colours of what is found, and of the segments that it is.
+/// The colours of found contours and of their segments.
 const FOUND: [u8; 3] = [44, 160, 44];
 const SEGMENTS: [u8; 3] = [31, 119, 180];
 
-/// The bytes of a picture with a part drawn where it is matched: its contours green where they are found,
-/// red and dashed where they are missed, and the segments that they are in blue.
+/// The bytes of a picture with a matched part drawn on it: found contours green, missed ones red
+/// and dashed, their segments blue.
 pub(crate) fn draw_match(
     grey: &Grey,
     picture: &ImageFeatures,
@@ -377,7 +379,7 @@ fn picture(prediction: &Prediction, below: Option<&Grey>) -> Canvas {
     picture
 }
 
-/// A level as a colour so light that lines are seen on it.
+/// A level as a light colour, on which lines are visible.
 fn faded(level: f32) -> [u8; 3] {
     [(96.0 + 0.625 * level.clamp(0.0, 255.0)) as u8; 3]
 }

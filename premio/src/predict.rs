@@ -1,4 +1,4 @@
-//! Which features a sensor and a detector will find.
+//! Prediction of the features that a sensor and a detector find.
 
 use crate::progress::Progress;
 use crate::{Error, Result, Solid};
@@ -17,7 +17,7 @@ use std::path::Path;
 /// The setup of a TOML file: camera, lights, sensor, material and detector.
 ///
 /// # Errors
-/// The file cannot be read, or is no setup.
+/// The file cannot be read, or is not a setup.
 ///
 /// # Examples
 ///
@@ -33,7 +33,7 @@ pub fn read_setup(path: impl AsRef<Path>) -> Result<Setup> {
 /// The setups of a TOML file: cameras and lights on spheres, for a model.
 ///
 /// # Errors
-/// The file cannot be read, or is none of setups.
+/// The file cannot be read, or is not setups.
 ///
 /// # Examples
 ///
@@ -49,7 +49,7 @@ pub(crate) fn text_of(path: &Path) -> Result<String> {
     fs::read_to_string(path).map_err(|source| Error::file(path, source))
 }
 
-/// How a prediction agrees with a picture.
+/// The agreement of a prediction with a picture.
 ///
 /// # Examples
 ///
@@ -69,14 +69,14 @@ pub struct PredictionAgreement {
     pub outlines: PredictionScore,
     /// Boundaries of shadows, and outlines of highlights.
     pub lighting: PredictionScore,
-    /// Each predicted arc with what is found of it.
+    /// Each predicted arc with its detection.
     pub features: Vec<MatchedArc>,
     /// The prediction.
     pub prediction: Prediction,
 }
 
 impl PredictionAgreement {
-    /// How the prediction of an image agrees with a picture of the sensor's size.
+    /// Compares the prediction of an image with a picture of the sensor's size.
     ///
     /// # Examples
     ///
@@ -110,7 +110,7 @@ impl PredictionAgreement {
     }
 }
 
-/// How many rows are rendered at once.
+/// The number of rows that are rendered at once.
 const STRIP: usize = 16;
 
 /// The picture of a predicted image's setup, by a line of sight through every pixel. A step of the
@@ -161,7 +161,7 @@ impl Solid {
     /// Calls a function with the predicted image of the solid in a setup.
     ///
     /// # Errors
-    /// The solid is empty, or nothing of it is seen in the setup.
+    /// The solid is empty, or not visible in the setup.
     ///
     /// # Examples
     ///
@@ -181,10 +181,11 @@ impl Solid {
         Ok(with_draft(&part, None, setup, &mut Memory::default(), ask)?)
     }
 
-    /// The features that a sensor and a detector will find of the solid in a setup, with their chances.
+    /// Predicts the features of the solid that a sensor and a detector find in a setup, with their
+    /// probabilities.
     ///
     /// # Errors
-    /// The solid is empty, or nothing of it is seen in the setup.
+    /// The solid is empty, or not visible in the setup.
     ///
     /// # Examples
     ///
@@ -226,7 +227,7 @@ impl Solid {
         self.with_prediction(setup, |draft| rendered(draft, seed, progress))?
     }
 
-    /// Holds the prediction against a picture of the solid in the setup, of the sensor's size.
+    /// Compares the prediction with a picture of the solid in the setup, of the sensor's size.
     ///
     /// # Errors
     /// As [`Solid::predict`]; or the picture has another size than the sensor.

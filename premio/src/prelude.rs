@@ -1,4 +1,4 @@
-//! What most callers need: `use premio::prelude::*;`.
+//! The items that most callers need: `use premio::prelude::*;`.
 //!
 //! # Examples
 //!

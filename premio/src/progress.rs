@@ -1,4 +1,4 @@
-//! How far long work is, and how it is cancelled.
+//! Progress and cancellation of long work.
 
 use std::fmt;
 use std::sync::Arc;
@@ -85,7 +85,7 @@ impl From<Arc<AtomicBool>> for CancelToken {
     }
 }
 
-/// What long work reports to, and is cancelled by.
+/// The receiver of the progress of long work, and its cancellation.
 ///
 /// # Examples
 ///
@@ -118,7 +118,7 @@ pub struct Progress<'c> {
     token: CancelToken,
 }
 
-/// How far work is.
+/// The progress of work.
 ///
 /// # Examples
 ///
@@ -131,9 +131,9 @@ pub struct Progress<'c> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ProgressStep {
-    /// How many steps are done.
+    /// The number of steps done.
     pub done: u64,
-    /// How many steps there are.
+    /// The number of all steps.
     pub total: u64,
 }
 
@@ -174,7 +174,7 @@ impl<'c> Progress<'c> {
         self
     }
 
-    /// Ends the work where the token is cancelled.
+    /// Sets the token that cancels the work.
     ///
     /// # Examples
     ///
@@ -192,7 +192,7 @@ impl<'c> Progress<'c> {
         self
     }
 
-    /// Whether the work goes on.
+    /// Checks that the work is not cancelled.
     ///
     /// # Errors
     /// The token is cancelled.

@@ -10,7 +10,7 @@ use std::path::Path;
 /// `.pov`.
 ///
 /// # Errors
-/// The file cannot be read, its ending names no language, or the text is no description. The error has
+/// The file cannot be read, its ending names no language, or the text is not a description. The error has
 /// the place in the text.
 ///
 /// # Examples
@@ -61,7 +61,7 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Expres
 /// Reads a description from a text.
 ///
 /// # Errors
-/// The text is no description. The error has the place in the text.
+/// The text is not a description. The error has the place in the text.
 ///
 /// # Examples
 ///
@@ -77,7 +77,7 @@ pub fn read_text(text: &str, format: Format) -> Result<Expression> {
     read_bytes("part", text.as_bytes(), format, &ReadOptions::default())
 }
 
-/// Reads a description from bytes. `name` is what errors and models call it.
+/// Reads a description from bytes. `name` is its name in errors and models.
 ///
 /// # Errors
 /// The bytes are no description. The error has the place in the text.

@@ -219,8 +219,8 @@ impl Solid {
         ids.map(|id| VertexRef::new(self.brep(), id))
     }
 
-    /// Whether a point is in the material. A point within the resolution of the boundary is taken to
-    /// be.
+    /// Whether a point is in the material. A point within the resolution of the boundary counts as
+    /// inside.
     ///
     /// # Examples
     ///
@@ -238,7 +238,7 @@ impl Solid {
         inside && !self.is_empty() && on()
     }
 
-    /// The resolution: what lies closer together coincides, in the solid's unit.
+    /// The resolution: the distance within which points coincide, in the solid's unit.
     ///
     /// # Examples
     ///
@@ -251,7 +251,8 @@ impl Solid {
         self.0.evaluation.resolution
     }
 
-    /// The decisions within a hundred times the resolution, either way, with their places.
+    /// The close calls: decisions within a factor of a hundred of the resolution, with their
+    /// positions.
     ///
     /// # Examples
     ///
@@ -268,7 +269,7 @@ impl Solid {
         &self.0.evaluation.decisions.close_calls
     }
 
-    /// How many decisions were made in which numbers.
+    /// The numbers of decisions by arithmetic.
     ///
     /// # Examples
     ///
@@ -281,8 +282,8 @@ impl Solid {
         &self.0.evaluation.decisions
     }
 
-    /// Runs every self-check: the rules of the boundary, the volume and the box by rays, the pieces and
-    /// contours of several views, their drawings, and the files, read back.
+    /// Runs every self-check: the rules of the boundary, the volume and the box by rays, the pieces
+    /// and contours of several views, their drawings, and the files, read back.
     ///
     /// `rays` rays measure the volume; the program uses 20 000.
     ///
@@ -300,8 +301,8 @@ impl Solid {
     /// The contours for a camera.
     ///
     /// # Errors
-    /// The camera is none, its eye lies in the material or too far away, or f64 do not tell the
-    /// surfaces of the solid apart.
+    /// The camera is invalid, its eye lies in the material or too far away, or f64 cannot separate
+    /// the surfaces of the solid.
     ///
     /// # Examples
     ///
@@ -318,8 +319,8 @@ impl Solid {
         View::new(self, camera)
     }
 
-    /// The topological object model: solids, shells, faces, boundaries, arcs and their relations. It is
-    /// what `premio export --format json` writes.
+    /// The topological object model: solids, shells, faces, boundaries, arcs and their relations.
+    /// It is what `premio export --format json` writes.
     ///
     /// # Examples
     ///

@@ -146,8 +146,8 @@ impl<'s> FaceRef<'s> {
         normal.map(|x| x + 0.0).into()
     }
 
-    /// The loops of edges around the face; none where the face is a whole closed surface. The face is
-    /// to the left of each loop as seen from outside the material.
+    /// The loops of edges around the face; none where the face is a whole closed surface. The face
+    /// is to the left of each loop as seen from outside the material.
     ///
     /// # Examples
     ///
@@ -255,8 +255,8 @@ impl<'s> EdgeRef<'s> {
         self.brep.curve(self.id)
     }
 
-    /// The range of the curve's parameter, increasing from the first to the last vertex. A closed edge
-    /// runs over one period.
+    /// The range of the curve's parameter, increasing from the first to the last vertex. A closed
+    /// edge runs over one period.
     ///
     /// # Examples
     ///
@@ -296,7 +296,7 @@ impl<'s> EdgeRef<'s> {
         self.brep.topology.edge(self.id).ends.is_none()
     }
 
-    /// Whether two faces meet along the edge and their normals agree.
+    /// Whether the edge is smooth: it has two faces, whose normals agree along it.
     ///
     /// # Examples
     ///
@@ -325,8 +325,8 @@ impl<'s> EdgeRef<'s> {
         Some(ends.map(|id| VertexRef::new(self.brep, id)))
     }
 
-    /// The faces around the edge, in order, counterclockwise as seen against its direction. There are
-    /// more than two where the boundary is no manifold.
+    /// The faces around the edge, in order, counterclockwise as seen against its direction. There
+    /// are more than two where the boundary is no manifold.
     ///
     /// # Examples
     ///

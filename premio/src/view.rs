@@ -1,4 +1,4 @@
-//! What a camera sees of a solid.
+//! The view of a solid from a camera.
 
 use crate::topology::{EdgeRef, FaceRef};
 use crate::write::{json_text, whole_file};
@@ -18,8 +18,8 @@ use std::sync::Arc;
 
 /// The contours of a solid for a camera, from [`Solid::view`].
 ///
-/// A contour is the image of an edge or of a limb. Junctions divide it into arcs of one visibility
-/// each. A view is `Send` and `Sync`, and a clone is cheap.
+/// A contour is the image of an edge or of a limb. Junctions divide it into arcs of constant
+/// visibility. A view is `Send` and `Sync`, and a clone is cheap.
 ///
 /// # Examples
 ///
@@ -62,7 +62,7 @@ impl View {
         })))
     }
 
-    /// All arcs of one visibility.
+    /// All arcs, each of constant visibility.
     ///
     /// # Examples
     ///
@@ -84,7 +84,7 @@ impl View {
         })
     }
 
-    /// The visible arcs that a drawing shows: without edges along which the normal does not jump.
+    /// The visible arcs that a drawing shows: without smooth edges.
     ///
     /// # Examples
     ///
@@ -100,7 +100,7 @@ impl View {
             .filter(|arc| arc.is_visible() && !arc.is_smooth())
     }
 
-    /// The hidden arcs that a drawing shows: without edges along which the normal does not jump.
+    /// The hidden arcs that a drawing shows: without smooth edges.
     ///
     /// # Examples
     ///
@@ -163,7 +163,7 @@ impl View {
         &self.0.solid
     }
 
-    /// The line drawing: every line once.
+    /// The line drawing, in which every line is drawn once.
     ///
     /// # Examples
     ///
@@ -269,8 +269,8 @@ impl View {
         whole_file(path.as_ref(), self.to_dxf())
     }
 
-    /// Writes the view in the format that the file's ending names: `.svg`, `.dxf` or `.json`. The file
-    /// appears whole or not at all.
+    /// Writes the view in the format that the file's ending names: `.svg`, `.dxf` or `.json`. The
+    /// file appears whole or not at all.
     ///
     /// # Errors
     /// The ending names no format, or the file cannot be written.
@@ -309,7 +309,7 @@ impl Solid {
     /// [`sheet_to_dxf`](crate::sheet_to_dxf).
     ///
     /// # Errors
-    /// As [`Solid::view`]; or the sheet has no room for the views at the scale.
+    /// As [`Solid::view`]; or the views do not fit on the sheet at the scale.
     ///
     /// # Examples
     ///
@@ -339,7 +339,7 @@ impl Solid {
     }
 }
 
-/// A piece of a contour between two junctions, of one visibility.
+/// A piece of a contour between two junctions, with constant visibility.
 ///
 /// # Examples
 ///
@@ -374,7 +374,7 @@ impl fmt::Debug for ViewArc<'_> {
 }
 
 impl<'v> ViewArc<'v> {
-    /// Whether nothing lies before the arc.
+    /// Whether no face occludes the arc.
     ///
     /// # Examples
     ///
@@ -389,7 +389,7 @@ impl<'v> ViewArc<'v> {
         self.piece.visible
     }
 
-    /// How many faces turned towards the eye lie before the arc.
+    /// The number of faces turned towards the eye that lie in front of the arc.
     ///
     /// # Examples
     ///
@@ -407,7 +407,7 @@ impl<'v> ViewArc<'v> {
         self.piece.qi
     }
 
-    /// The nearest of the faces before the arc.
+    /// The face in front of the arc that is nearest to the eye.
     ///
     /// # Examples
     ///
@@ -438,7 +438,7 @@ impl<'v> ViewArc<'v> {
         self.contour.kind
     }
 
-    /// Whether the arc is of an edge along which the normal does not jump.
+    /// Whether the arc is of a smooth edge.
     ///
     /// # Examples
     ///

@@ -70,7 +70,7 @@ impl SolidFormat {
     }
 }
 
-/// What a file of a solid says.
+/// The settings of a solid's file.
 ///
 /// # Examples
 ///
@@ -84,14 +84,14 @@ impl SolidFormat {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportSettings {
-    /// What the solid is called.
+    /// The name of the solid.
     pub name: String,
-    /// What its unit is; by default millimetres.
+    /// The unit of the solid; by default millimetres.
     pub unit: Unit,
-    /// How finely triangles follow the boundary.
+    /// The fineness of triangles.
     pub fineness: Fineness,
-    /// How far splines in STEP may be from their curves, in the solid's unit; by default a millionth
-    /// of its size.
+    /// The greatest distance of splines in STEP from their curves, in the solid's unit; by default
+    /// a millionth of its size.
     pub accuracy: Option<f64>,
     /// The application protocol of STEP.
     pub protocol: Protocol,
@@ -123,7 +123,7 @@ impl Solid {
     /// The text of a STEP file: the exact boundary.
     ///
     /// # Errors
-    /// The solid is empty, or something of it is as thin as points of other kernels are wide.
+    /// The solid is empty, or a part of it is thinner than the point tolerance of other kernels.
     ///
     /// # Examples
     ///
@@ -212,8 +212,8 @@ impl Solid {
         whole_file(path, self.to_step(&ExportSettings::for_path(path))?)
     }
 
-    /// Writes a file in the format that its ending names: `.step`, `.stl`, `.obj`, `.glb`, `.3mf` or
-    /// `.json`. It appears whole or not at all.
+    /// Writes a file in the format that its ending names: `.step`, `.stl`, `.obj`, `.glb`, `.3mf`
+    /// or `.json`. It appears whole or not at all.
     ///
     /// # Errors
     /// As [`Solid::to_bytes`]; the ending names no format, or the file cannot be written.

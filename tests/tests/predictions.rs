@@ -479,7 +479,7 @@ fn impossible_setups_are_refused() {
     assert!(away.contains("behind the camera"), "{away}");
     let lateral =
         message("[camera]\neye = [9, 7, 8]\ntarget = [9, 0, 8]\n[[light]]\nposition = [9, 9, 9]\n");
-    assert!(lateral.contains("falls on"), "{lateral}");
+    assert!(lateral.contains("projects to"), "{lateral}");
     let face = message(&format!(
         "{camera}[[light]]\nposition = [9, 9, 9]\n[[surface]]\nfaces = [0, 99]\nmaterial = \"steel\"\n"
     ));

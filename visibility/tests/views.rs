@@ -128,7 +128,7 @@ fn a_cylinder_in_general_and_along_and_across_its_axis() {
     assert_eq!(c.contours.len(), 2);
     assert_eq!(visible(&c, 0), [false]);
     assert_eq!(visible(&c, 1), [true]);
-    // Across: the circles are lines, their far halves hidden.
+    // From the side: the circles are lines, their far halves hidden.
     let c = see(&b.brep, &ortho([9.0, 0.0, 1.0], [0.0, 0.0, 1.0]));
     assert_eq!(c.contours.len(), 4);
     for i in 0..2 {
@@ -188,7 +188,7 @@ fn check_torus(
         .iter()
         .filter(|j| j.kind == JunctionKind::Cusp)
         .count();
-    let (mut asked, mut told) = (0, 0);
+    let (mut evaluated, mut decided) = (0, 0);
     for contour in &c.contours {
         for piece in &contour.pieces {
             for part in [0.15, 0.5, 0.83] {
@@ -198,15 +198,15 @@ fn check_torus(
                     Ok(e) => ((e - p).normalize(), (e - p).norm()),
                     Err(d) => (-d, 20.0),
                 };
-                asked += 1;
+                evaluated += 1;
                 if let Some(truth) = torus_oracle(&torus, p, v, length) {
-                    told += 1;
+                    decided += 1;
                     assert_eq!(piece.qi, truth, "{camera:?} {part} {piece:?}");
                 }
             }
         }
     }
-    assert!(told * 3 > asked * 2, "{told} of {asked}");
+    assert!(decided * 3 > evaluated * 2, "{decided} of {evaluated}");
     (cusps, c.contours.len())
 }
 
@@ -331,7 +331,7 @@ proptest! {
         prop_assume!(Surface::Torus(Torus { frame: f, major: 2.0, minor }).distance(&e) > 0.2);
         let up = Vector3::z();
         let camera = ViewCamera::perspective(e, f.origin, up, 1.0).unwrap();
-        // From between the walls everything is close: only what lies before the eye is listed.
+        // From between the walls everything is near: only what lies in front of the eye is listed.
         prop_assume!(away > 2.5 + minor);
         check_torus(f, 2.0, minor, &camera, Ok(e));
         let camera = ViewCamera::orthographic(e, f.origin, up).unwrap();
@@ -352,10 +352,10 @@ proptest! {
     }
 }
 
-/// A limb ends 7e-5 after it passes below a rim: there what is counted at one place is next to another
-/// contour, and at another place it is not.
+/// A limb ends 7e-5 after it passes below a rim. At one position the piece is next to another
+/// contour, and at another position it is not.
 #[test]
-fn a_short_piece_is_counted_where_it_is_plain() {
+fn a_short_piece_is_counted_where_it_is_unambiguous() {
     let d = Vector3::new(
         0.237_761_058_377_204_07,
         -0.932_521_277_749_971_8,

@@ -1,4 +1,4 @@
-//! The options that give a camera.
+//! The options for a camera.
 
 use super::{ViewName, positive, vector};
 use clap::Args;
@@ -14,16 +14,16 @@ pub struct CameraOptions {
     /// A file with the camera as JSON
     #[arg(long, value_name = "CAM.json", conflicts_with_all = ["eye", "target", "up", "focal", "ortho"])]
     pub camera: Option<PathBuf>,
-    /// Where the eye is
+    /// The eye
     #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<[f64; 3]>,
     /// A point that the eye looks at [default: the middle of the part]
     #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<[f64; 3]>,
-    /// What is up in the image [default: 0,0,1]
+    /// The direction that is up in the image [default: 0,0,1]
     #[arg(long, value_name = "x,y,z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<[f64; 3]>,
-    /// The focal length, the unit of the image [default: 1]
+    /// The focal length, which is the unit of the image [default: 1]
     #[arg(long, value_name = "f", value_parser = positive, conflicts_with = "ortho")]
     pub focal: Option<f64>,
     /// Parallel instead of central projection
@@ -31,20 +31,20 @@ pub struct CameraOptions {
     pub ortho: bool,
 }
 
-/// A camera as the command line gives it.
+/// The camera of the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CameraChoice<'a> {
-    /// That of a file.
+    /// The camera of a file.
     File(&'a Path),
     /// A view of the part about its middle.
     Named(ViewName),
-    /// An eye that looks at a point, or else at the middle of the part.
+    /// An eye that looks at a point, or otherwise at the middle of the part.
     Eye {
-        /// Where it is.
+        /// The eye.
         eye: [f64; 3],
-        /// What it looks at.
+        /// The target.
         target: Option<[f64; 3]>,
-        /// What is up.
+        /// The direction that is up in the image.
         up: [f64; 3],
         /// The focal length; none for parallel projection.
         focal: Option<f64>,
@@ -57,7 +57,7 @@ const CAMERAS: &str = "a camera is `--camera CAM.json`, `--eye x,y,z` (with `--t
     or iso), or, on a sheet, `--views NAMES`; without any it is `--view iso`";
 
 impl CameraOptions {
-    /// The camera that is meant.
+    /// The chosen camera.
     ///
     /// # Errors
     /// Options of an eye are given, and no eye.
@@ -78,7 +78,7 @@ impl CameraOptions {
                 up: self.up.unwrap_or([0.0, 0.0, 1.0]),
                 focal: (!self.ortho).then(|| self.focal.unwrap_or(1.0)),
             }),
-            (None, Some((option, _))) => Err(format!("`--{option}` goes with `--eye`: {CAMERAS}")),
+            (None, Some((option, _))) => Err(format!("`--{option}` needs `--eye`: {CAMERAS}")),
             (None, None) => Ok(CameraChoice::Named(self.view.unwrap_or(ViewName::Iso))),
         }
     }

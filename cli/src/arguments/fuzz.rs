@@ -21,37 +21,37 @@ pub struct FuzzOptions {
     /// The first seed
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub from: u64,
-    /// How many seeds of each profile
+    /// The number of seeds of each profile
     #[arg(long, value_name = "N", default_value_t = 1000)]
     pub count: u64,
-    /// How many trees at a time [default: as many as there are processors]
+    /// The number of trees at a time [default: the number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Evaluate each tree once more with no decision made in f64, and compare
+    /// Evaluate each tree again without decisions in f64, and compare
     #[arg(long)]
     pub unfiltered: bool,
-    /// Draw five views, follow the boundary of the shadow in each, and read the sheets back
+    /// Draw five views, check the boundary of the shadow in each, and read the sheets back
     #[arg(long)]
     pub sheets: bool,
-    /// Count the pieces of five views again, and look for missing contours
+    /// Recount the pieces of five views, and search for missing contours
     #[arg(long)]
     pub views: bool,
-    /// Write STEP files and meshes, read them back and hold them against the boundary
+    /// Write STEP files and meshes, read them back and compare them with the boundary
     #[arg(long)]
     pub step: bool,
-    /// After how many seconds a tree is given up
+    /// The time limit of a tree, in seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "120")]
     pub limit: f64,
-    /// How many rays measure each volume
+    /// The number of rays that measure each volume
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     pub rays: u32,
-    /// Make the first finds of each kind as small as they fail in the same way
+    /// Shrink the first findings of each kind as long as they fail in the same way
     #[arg(long)]
     pub shrink: bool,
     /// Write the models to a folder, with a manifest of their true measures
     #[arg(long, value_name = "DIR")]
     pub write: Option<PathBuf>,
-    /// How the models are written
+    /// The formats of the models
     #[arg(
         long,
         value_name = "F",
@@ -61,10 +61,10 @@ pub struct FuzzOptions {
         requires = "write"
     )]
     pub write_format: Vec<ModelFormat>,
-    /// Keep in a file how far the run is; with the same arguments it goes on from there
+    /// Keep the state of the run in a file; with the same arguments it continues from there
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
-    /// What lies nearer than this coincides, in the part's unit [default: 1e-11 of its size]
+    /// Points nearer than this coincide, in the part's unit [default: 1e-11 of its size]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub resolution: Option<f64>,
     /// Refuse a tree where a decision was closer than a hundred to one
@@ -73,7 +73,7 @@ pub struct FuzzOptions {
     /// Where to write the summary [default: standard output]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Be a worker: answer models from standard input, on these terms
+    /// Be a worker: run the trials of models from standard input, with this configuration
     #[arg(long, hide = true, value_name = "TERMS")]
     pub worker: Option<String>,
 }

@@ -3,10 +3,10 @@
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What is looked for, and how.
+/// The part and the options of the search.
 #[derive(Debug, Args)]
 pub struct SoughtOptions {
-    /// The part: a model of `premio model`, or a description (of which nothing is predicted)
+    /// The part: a model of `premio model`, or a description (without predictions)
     #[arg(value_name = "MODEL")]
     pub model: PathBuf,
     /// The pictures: .png, .pgm or .jpg
@@ -21,19 +21,19 @@ pub struct SoughtOptions {
     /// How correspondences are searched
     #[arg(long, value_enum, default_value_t)]
     pub strategy: StrategyName,
-    /// Take nothing of the predictions: one detectability for all, no relations
+    /// Ignore the predictions: one detectability for all features, no relations
     #[arg(long)]
     pub uniform: bool,
-    /// Draw the part where it is found, on the one picture: OUT.png
+    /// Draw the found part on the picture, for one picture: OUT.png
     #[arg(long, value_name = "OUT")]
     pub overlay: Option<PathBuf>,
-    /// Write the poses as the BOP challenge does, for the scoring tools of others
+    /// Write the poses as CSV for the tools of the BOP challenge
     #[arg(long, value_name = "OUT")]
     pub csv: Option<PathBuf>,
     /// The scene and the object of the CSV; pictures are numbered by their names, or in order
     #[arg(long, value_name = "SCENE,OBJECT", value_parser = pair, default_value = "1,1")]
     pub ids: [u32; 2],
-    /// Where to write what is found [default: standard output]
+    /// Where to write the result [default: standard output]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
 }
@@ -43,7 +43,7 @@ pub struct SoughtOptions {
 pub struct MatchOptions {
     #[command(flatten)]
     pub sought: SoughtOptions,
-    /// Say in words why the winning correspondences won
+    /// Explain in words why the winning correspondences won
     #[arg(long)]
     pub explain: bool,
 }
@@ -61,15 +61,15 @@ pub enum StrategyName {
     /// Depth-first branch and bound
     #[default]
     Bounded,
-    /// IDA*: rounds with a threshold that falls to the greatest bound that was cut
+    /// IDA*: rounds with a threshold that falls to the greatest pruned bound
     Deepening,
     /// Rounds with a threshold that falls in steps
     Stepped,
 }
 
 fn pair(text: &str) -> Result<[u32; 2], String> {
-    let told = || "expected SCENE,OBJECT, as in 1,5".to_owned();
-    let (a, b) = text.split_once(',').ok_or_else(told)?;
-    let number = |s: &str| s.trim().parse().map_err(|_| told());
+    let wrong = || "expected SCENE,OBJECT, as in 1,5".to_owned();
+    let (a, b) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |s: &str| s.trim().parse().map_err(|_| wrong());
     Ok([number(a)?, number(b)?])
 }

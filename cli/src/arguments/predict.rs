@@ -45,7 +45,7 @@ pub struct CompareOptions {
     /// The image (.png, .pgm, .jpg); without one it is rendered
     #[arg(long, value_name = "IMAGE")]
     pub image: Option<PathBuf>,
-    /// Draw what is found of the features: OUT.svg, or OUT.png
+    /// Draw the detections of the features: OUT.svg, or OUT.png
     #[arg(long, value_name = "OUT")]
     pub overlay: Option<PathBuf>,
     /// Where to write the comparison [default: standard output]
@@ -56,7 +56,7 @@ pub struct CompareOptions {
 /// Options of `schema`.
 #[derive(Debug, Args)]
 pub struct SchemaOptions {
-    /// Of what
+    /// The output format
     #[arg(value_enum, value_name = "FORMAT")]
     pub of: SchemaName,
     #[command(flatten)]
@@ -76,15 +76,15 @@ pub enum SchemaName {
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct ModelOptions {
-    /// In place of predicting: put shards together
+    /// Instead of predicting: merge shards
     #[command(subcommand)]
     pub command: Option<ModelCommand>,
     #[command(flatten)]
     pub run: ModelRun,
 }
 
-/// The options of a run, if one is requested: clap finds no options that are absent as a whole where
-/// they hold others.
+/// The options of a run, if one is requested: clap reports options as absent only as a whole, which
+/// fails where they contain others.
 #[derive(Debug)]
 pub struct ModelRun(pub Option<ModelRunOptions>);
 
@@ -111,7 +111,7 @@ impl Args for ModelRun {
     }
 }
 
-/// What else there is to do with models.
+/// The other commands for models.
 #[derive(Debug, Subcommand)]
 pub enum ModelCommand {
     /// The model of all shards of one run
@@ -129,7 +129,7 @@ pub struct MergeOptions {
     pub output: ModelOutput,
 }
 
-/// Where a model goes.
+/// The output of a model.
 #[derive(Debug, Args)]
 pub struct ModelOutput {
     /// Where to write the model, or the shard [default: standard output]
@@ -143,13 +143,13 @@ pub struct ModelOutput {
 /// The formats of models of many setups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RecordsFormat {
-    /// premio.model/1: a record a line, as JSON
+    /// premio.model/1: one JSON record per line
     Jsonl,
-    /// The same as a table, where the program is built with it
+    /// The records as a table, where the program is built with it
     Parquet,
 }
 
-/// Options of `model` as it predicts.
+/// Options of `model` for predicting.
 #[derive(Debug, Args)]
 pub struct ModelRunOptions {
     #[command(flatten)]
@@ -162,10 +162,10 @@ pub struct ModelRunOptions {
     /// Predict one of N shards only, I from 1: for `model merge`
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<ShardChoice>,
-    /// Go on with a run that was interrupted
+    /// Continue a run that was interrupted
     #[arg(long, conflicts_with = "shard", requires = "output")]
     pub resume: bool,
-    /// How many threads predict [default: as many as there are cores]
+    /// The number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
@@ -173,9 +173,9 @@ pub struct ModelRunOptions {
 /// One of several shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShardChoice {
-    /// Which, from 1.
+    /// The index, from 1.
     pub index: usize,
-    /// Of how many.
+    /// The number of shards.
     pub of: usize,
 }
 
@@ -203,10 +203,10 @@ pub struct AdviseOptions {
     /// What is sought
     #[arg(long, value_enum, default_value = "features")]
     pub goal: GoalName,
-    /// How many setups are listed below the best
+    /// The number of setups that are listed below the best
     #[arg(long, value_name = "N", default_value = "10")]
     pub top: u16,
-    /// How many threads work [default: as many as there are cores]
+    /// The number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     #[command(flatten)]
@@ -216,8 +216,8 @@ pub struct AdviseOptions {
 /// What is sought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum GoalName {
-    /// The most features that are expected to be found
+    /// The greatest expected number of found features
     Features,
-    /// The least deviation of the pose
+    /// The least standard deviation of the pose
     Pose,
 }

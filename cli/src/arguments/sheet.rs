@@ -1,30 +1,29 @@
-//! The sheet on which views are put.
+//! The options for a sheet of views.
 
 use super::{LengthUnit, positive};
 use clap::{Args, ValueEnum};
 use premio_drawing::sheet::{Angle, Paper, Scale, StandardView};
 
-/// A sheet of paper with a frame and a title block; any of these asks for it.
+/// A sheet of paper with a frame and a title block; any of these options requests it.
 #[derive(Debug, Args)]
 pub struct SheetArguments {
-    /// Views next to one another on a sheet, in place of a camera (svg, dxf)
+    /// Several views on a sheet, instead of a camera (svg, dxf)
     #[arg(long, value_enum, value_name = "VIEWS", value_delimiter = ',',
           conflicts_with_all = ["view", "camera", "eye", "target", "up", "focal", "ortho"])]
     pub views: Vec<ViewName>,
-    /// The paper, lying (svg, dxf) [default: a3]
+    /// The paper, landscape (svg, dxf) [default: a3]
     #[arg(long, value_enum, value_name = "PAPER")]
     pub paper: Option<PaperSize>,
-    /// How long on paper what length of the part is, as 1:2 (svg, dxf) [default: the greatest of 1, 2,
-    /// 5, 10 and so on that has room]
+    /// The scale, as 1:2 (svg, dxf) [default: the greatest of 1, 2, 5, 10 and so on that fits]
     #[arg(long, value_name = "A:B", value_parser = scale)]
     pub scale: Option<Scale>,
-    /// What stands in the title block (svg, dxf) [default: the file's name]
+    /// The title in the title block (svg, dxf) [default: the file's name]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
-    /// What the part's unit is (svg, dxf) [default: mm]
+    /// The part's unit (svg, dxf) [default: mm]
     #[arg(long, value_enum, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// Where views stand: across from where they are seen from, or there (svg, dxf) [default: first]
+    /// First-angle or third-angle projection (svg, dxf) [default: first]
     #[arg(long, value_enum, value_name = "ANGLE")]
     pub projection: Option<ProjectionAngle>,
 }
@@ -75,12 +74,12 @@ pub enum PaperSize {
     A4,
 }
 
-/// Where views stand around the front view.
+/// The projection method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProjectionAngle {
-    /// The view from above stands below
+    /// The view from above is placed below
     First,
-    /// The view from above stands above
+    /// The view from above is placed above
     Third,
 }
 
@@ -119,7 +118,7 @@ impl From<ProjectionAngle> for Angle {
     }
 }
 
-/// A scale: two positive numbers with a colon between.
+/// Parses a scale: two positive numbers with a colon between.
 fn scale(text: &str) -> Result<Scale, String> {
     let wrong = || "expected two positive numbers, as in `1:2`".to_owned();
     let (drawn, of) = text.split_once(':').ok_or_else(wrong)?;

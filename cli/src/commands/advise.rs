@@ -1,4 +1,4 @@
-//! `premio advise`: where camera and light are best.
+//! `premio advise`: the best directions of camera and light.
 
 use crate::arguments::{AdviseOptions, GoalName};
 use crate::diagnostics::{CliError, Reporter};
@@ -15,17 +15,17 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// A setup that is advised.
+/// An advised setup.
 #[derive(Debug, Serialize)]
 struct Advised {
     eye: [f64; 3],
     light: Option<[f64; 3]>,
     #[serde(flatten)]
     score: Score,
-    /// What it costs against the best: how many features fewer, and by how much the pose's deviations
-    /// are greater.
+    /// Its cost relative to the best: how many features fewer, and the factors by which the pose's
+    /// standard deviations are greater.
     cost: Cost,
-    /// The features that the best is likely to find, and this one is not.
+    /// The features that the best setup probably finds, and this one does not.
     lost: Vec<ArcSource>,
 }
 
@@ -35,16 +35,16 @@ struct Cost {
     pose: Option<[f64; 2]>,
 }
 
-/// The advice, as it is handed on.
+/// The advice, as it is written.
 #[derive(Debug, Serialize)]
 struct Advice {
     schema: &'static str,
     goal: Goal,
-    /// How many setups were tried.
+    /// The number of setups tried.
     tried: usize,
-    /// Of how many of them nothing is seen.
+    /// The number of them in which the part is not visible.
     unseen: usize,
-    /// The best, refined; then the best of the setups as they are.
+    /// The best one, refined; then the best of the given setups.
     best: Vec<Advised>,
 }
 
@@ -75,7 +75,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
     let Some(first) = scored.first().cloned() else {
         let name = options.setups.display();
         return Err(CliError::input(format!(
-            "{name}: in none of {tried} setups the part is seen"
+            "{name}: the part is not visible in any of {tried} setups"
         )));
     };
     let working = voice.working("moving the best setup");
@@ -100,10 +100,10 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
     }
 }
 
-/// How many setups are scored before those are dropped that are not among the best.
+/// The number of setups that are scored before all but the best are dropped.
 const BATCH: usize = 256;
 
-/// The best of all setups, the best first, and in how many something is seen.
+/// The best of all setups, the best first, and the number in which the part is visible.
 fn scores(
     predicates: &SetupScorer<'_>,
     keep: usize,
@@ -174,13 +174,16 @@ fn words(advice: &Advice) -> String {
         None => "as given".to_owned(),
     };
     for (rank, one) in advice.best.iter().enumerate() {
-        let pose = one.score.pose.map_or("untold".to_owned(), |[turn, by]| {
-            format!("{:.4}°, {by:.3e}", turn.to_degrees())
-        });
+        let pose = one
+            .score
+            .pose
+            .map_or("undetermined".to_owned(), |[turn, by]| {
+                format!("{:.4}°, {by:.3e}", turn.to_degrees())
+            });
         let times = one
             .cost
             .pose
-            .map_or("pose untold".to_owned(), |[turn, by]| {
+            .map_or("pose undetermined".to_owned(), |[turn, by]| {
                 format!("pose x {turn:.2}, {by:.2}")
             });
         let cost = match rank {

@@ -1,4 +1,4 @@
-//! `premio check`: every self-check there is, on one description.
+//! `premio check`: all self-checks on one description.
 
 use crate::arguments::CheckOptions;
 use crate::diagnostics::CliError;
@@ -18,7 +18,7 @@ pub fn run(options: &CheckOptions, session: Session) -> Result<(), CliError> {
         true => output::json(&Checked::new(&report), None)?,
         false => output::write(report.to_string(), None)?,
     }
-    // A check that does not tell has not failed.
+    // An undetermined check has not failed.
     match report.checks_with(Finding::Fails).next() {
         None => Ok(()),
         Some(_) => Err(CliError::Check),

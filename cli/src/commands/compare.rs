@@ -1,4 +1,4 @@
-//! `premio compare`: what is predicted, held against what is found in an image.
+//! `premio compare`: a prediction compared with the detection in an image.
 
 use super::render::rendered;
 use crate::arguments::CompareOptions;
@@ -12,7 +12,7 @@ use premio_predict::prediction_score::{MatchedArc, PredictionScore, SCHEMA};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The comparison, as it is handed on.
+/// The comparison, as it is written.
 #[derive(Debug, Serialize)]
 struct Comparison {
     schema: &'static str,

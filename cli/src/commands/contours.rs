@@ -44,7 +44,7 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), CliError> 
     }
 }
 
-/// What a camera sees; `given` is how it was given, where that was not by the name of a view.
+/// The view of a camera; `given` is its origin, where that is not the name of a view.
 fn seen(
     part: &EvaluatedPart,
     camera: &Camera,
@@ -80,9 +80,7 @@ fn on_sheet(
 ) -> Result<String, CliError> {
     let write = match format {
         ContoursFormat::Json => {
-            return Err(CliError::input(
-                "a sheet goes with --format svg and dxf only",
-            ));
+            return Err(CliError::input("a sheet needs --format svg or dxf"));
         }
         ContoursFormat::Svg => svg::write_sheet,
         ContoursFormat::Dxf => dxf::write_sheet,
@@ -123,9 +121,9 @@ fn on_sheet(
     Ok(write(&sheet))
 }
 
-/// A camera, before there is a part.
+/// A camera, before the part is evaluated.
 enum Given<'a> {
-    /// That of a file.
+    /// The camera of a file.
     File {
         /// The file.
         path: &'a Path,
@@ -171,7 +169,7 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// That the camera is refused where the eye is; none where that is not what is wrong.
+    /// The error of a camera whose eye is refused; none for another error.
     fn refused(&self, error: &ViewError) -> Option<CliError> {
         let words = match error {
             ViewError::EyeInside(_) => "lies inside the material of the part",

@@ -26,16 +26,17 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), CliError> {
         }
         written => written.map_err(|e| failed(&e))?,
     };
-    // What was written is read again: only that tells what the language could not hold.
+    // The written text is read again to find what the language could not express.
     let read = reader::read(&name, text.as_bytes(), target, &ReadOptions::default());
-    let again = read.map_err(|e| CliError::limit(format!("what was written is not read: {e}")))?;
+    let again =
+        read.map_err(|e| CliError::limit(format!("the written text cannot be read: {e}")))?;
     let digits = source.digits.filter(|_| again.digits.is_none());
     let lost = [lost(&tree, &again.tree, target), digits.map(coarse)];
-    for told in lost.into_iter().flatten() {
+    for note in lost.into_iter().flatten() {
         if options.exact {
-            return Err(CliError::limit(format!("{name}: {told}")));
+            return Err(CliError::limit(format!("{name}: {note}")));
         }
-        voice.note(&name, &told);
+        voice.note(&name, &note);
     }
     output::write(&text, Some(&options.output))
 }
@@ -49,15 +50,15 @@ fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Prog
     Ok(source)
 }
 
-/// What is lost where numbers of few digits are written with all of theirs.
+/// The note on numbers of few digits, which are written with all of theirs.
 fn coarse(digits: f64) -> String {
     format!(
-        "numbers of few digits: what is nearer than {digits:.1e} of the part's size coincides in \
-         what was read, and in what is written with such a `--resolution` only"
+        "numbers of few digits: points nearer than {digits:.1e} of the part's size coincide in the \
+         file that was read; in the written file they do so only with such a `--resolution`"
     )
 }
 
-/// What a language could not hold of a tree.
+/// The note on what a language could not express of a tree.
 fn lost(tree: &Tree, again: &Tree, target: Format) -> Option<String> {
     if tree == again {
         return None;

@@ -1,4 +1,4 @@
-//! `premio export`: the boundary in a format of choice.
+//! `premio export`: the boundary in a chosen format.
 
 use crate::arguments::{ExportFormat, ExportOptions, StepProtocol};
 use crate::diagnostics::{CliError, Reporter, counted};
@@ -16,7 +16,7 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), CliError> {
         .output
         .format(options.format)
         .map_err(CliError::input)?;
-    refuse_what_is_not_asked(options, format)?;
+    refuse_unused_options(options, format)?;
     let part = input::part(&options.description, session)?;
     let to = options.output.path();
     let working = voice.working("making the file");
@@ -24,11 +24,11 @@ pub fn run(options: &ExportOptions, session: Session) -> Result<(), CliError> {
     let bytes = bytes.map_err(|error| failed(&part, &error))?;
     drop(working);
     output::write(&bytes, to)?;
-    tell_parted(&part, format, voice);
+    note_split_edges(&part, format, voice);
     Ok(())
 }
 
-/// What the options say of the file.
+/// The settings of the file from the options.
 fn settings(options: &ExportOptions) -> ExportSettings {
     let name = options.name.clone();
     ExportSettings {
@@ -70,8 +70,8 @@ impl From<ExportFormat> for SolidFormat {
     }
 }
 
-/// An option that says nothing in the format is a mistake.
-fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Result<(), CliError> {
+/// Refuses an option that has no meaning in the format.
+fn refuse_unused_options(options: &ExportOptions, format: ExportFormat) -> Result<(), CliError> {
     use ExportFormat::{Glb, Obj, Step, Stl, ThreeMf};
     let meshes: &[ExportFormat] = &[Stl, Obj, Glb, ThreeMf];
     let given: [(&str, bool, &[ExportFormat]); 6] = [
@@ -87,7 +87,7 @@ fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Re
             let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
             let formats = formats.join(", ");
             return Err(CliError::input(format!(
-                "`--{option}` does not go with `--format {}`, only with {formats}",
+                "`--{option}` does not apply to `--format {}`, only to {formats}",
                 format.name()
             )));
         }
@@ -95,8 +95,8 @@ fn refuse_what_is_not_asked(options: &ExportOptions, format: ExportFormat) -> Re
     Ok(())
 }
 
-/// Says what became of edges of more than two faces.
-fn tell_parted(part: &EvaluatedPart, format: ExportFormat, voice: Reporter) {
+/// Notes how edges of more than two faces are written.
+fn note_split_edges(part: &EvaluatedPart, format: ExportFormat, voice: Reporter) {
     let parted = part.solid.brep().topology.edges_of_many_faces();
     if parted == 0 {
         return;
@@ -104,10 +104,10 @@ fn tell_parted(part: &EvaluatedPart, format: ExportFormat, voice: Reporter) {
     let edges = counted(parted, "edge");
     let became = match format {
         ExportFormat::Json => return,
-        ExportFormat::Step => "each pair of faces has its own",
-        ExportFormat::Obj | ExportFormat::ThreeMf => "each pair of faces has points of its own",
+        ExportFormat::Step => "each pair of faces gets an edge of its own",
+        ExportFormat::Obj | ExportFormat::ThreeMf => "each pair of faces gets points of its own",
         ExportFormat::Stl | ExportFormat::Glb => {
-            "readers that make one of points in one place find more than two triangles there"
+            "readers that merge equal points find more than two triangles there"
         }
     };
     let said = format!("{edges} of more than two faces: {became}");

@@ -1,4 +1,4 @@
-//! `premio fuzz`: random trees by the thousand.
+//! `premio fuzz`: self-checks on thousands of random trees.
 
 use crate::arguments::{FuzzOptions, ModelFormat, ProfileChoice};
 use crate::diagnostics::{CliError, Reporter};
@@ -87,7 +87,7 @@ fn tell(
 
 fn worker(terms: &str, limit: Duration) -> Result<(), CliError> {
     let terms: TrialConfig = serde_json::from_str(terms)
-        .map_err(|e| CliError::input(format!("the terms of a worker: {e}")))?;
+        .map_err(|e| CliError::input(format!("the configuration of a worker: {e}")))?;
     serve(&terms, limit).map_err(|e| FuzzError::Worker(e).into())
 }
 

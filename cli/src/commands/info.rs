@@ -28,7 +28,7 @@ struct Info {
     non_manifold: NonManifold,
     faces_by_surface: BTreeMap<&'static str, usize>,
     decisions: Counts,
-    /// Every decision within a hundred times the resolution, either way.
+    /// Every decision within a factor of a hundred of the resolution.
     close_calls: Vec<CloseCall>,
     resolution: f64,
     seconds: Seconds,
@@ -40,7 +40,7 @@ struct Bounds {
     max: [f64; 3],
 }
 
-/// Where the boundary is no manifold.
+/// The non-manifold edges and points of the boundary.
 #[derive(Debug, Serialize)]
 struct NonManifold {
     /// Edges that bound more than two face corners.
@@ -146,11 +146,11 @@ impl Counts {
     }
 }
 
-/// Shells are named one by one up to so many.
+/// The number of shells up to which each is listed.
 const NAMED: usize = 24;
 
 impl Info {
-    /// The genus of each shell, or how many there are of each.
+    /// The genus of each shell, or the number of shells of each genus.
     fn genera(&self) -> String {
         if self.genus.len() <= NAMED {
             return format!("{:?}", self.genus);
@@ -207,7 +207,7 @@ impl fmt::Display for Info {
     }
 }
 
-/// The shorter way to write all digits of a number.
+/// The shorter notation of a number with all its digits.
 fn short(x: f64) -> String {
     let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
     if scientific.len() < plain.len() {

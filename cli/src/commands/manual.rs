@@ -1,4 +1,4 @@
-//! `premio man` and `premio completions`: what the command line says of itself, for the shell.
+//! `premio man` and `premio completions`: manual pages and completions of the command line.
 
 use crate::arguments::{Arguments, CompletionsOptions, ManOptions};
 use crate::diagnostics::CliError;

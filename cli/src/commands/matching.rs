@@ -1,4 +1,4 @@
-//! `premio match` and `premio track`: where the part is in pictures.
+//! `premio match` and `premio track`: the part in pictures.
 
 use crate::arguments::{MatchOptions, SoughtOptions, StrategyName, TrackOptions};
 use crate::diagnostics::CliError;
@@ -19,7 +19,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-/// What is looked for.
+/// The part and the options of the search.
 struct Sought {
     name: String,
     described: EvaluatedPart,
@@ -68,12 +68,12 @@ impl Sought {
     }
 }
 
-/// Reads what is looked for.
+/// Reads the part, the camera and the detector.
 fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     let path = &options.model;
     let name = path.display().to_string();
     if options.overlay.is_some() && options.images.len() != 1 {
-        let said = "--overlay is of one picture, and there are";
+        let said = "--overlay takes one picture, and there are";
         return Err(CliError::input(format!("{said} {}", options.images.len())));
     }
     if let Some(path) = &options.overlay {
@@ -105,7 +105,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     let resolution = input::view_resolution(&described)?;
     if described.solid.brep().topology.faces.is_empty() {
         return Err(CliError::input(format!(
-            "{name}: the part is empty: there is nothing to be found"
+            "{name}: the part is empty: there is nothing to find"
         )));
     }
     Ok(Sought {
@@ -126,12 +126,12 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     })
 }
 
-/// Looks at every picture, and hands on what is found.
+/// Searches every picture, and writes the results.
 fn each(
     options: &SoughtOptions,
     camera: &PinholeFile,
     mut look: impl FnMut(Grey, Pinhole, &str) -> PictureMatch,
-    told: impl Fn(&PictureMatch) -> Option<String>,
+    explain: impl Fn(&PictureMatch) -> Option<String>,
     session: Session,
 ) -> Result<(), CliError> {
     let voice = session.voice;
@@ -147,7 +147,7 @@ fn each(
         }
         let found = match at(camera, path, &mut look, session) {
             Ok(found) => found,
-            // The other pictures are looked at all the same.
+            // The other pictures are still searched.
             Err(failure) => {
                 let said = failed.replace(failure);
                 bar.suspend(|| said.map(|failure| voice.fail(failure)));
@@ -158,7 +158,7 @@ fn each(
         seen += 1;
         let report = found.report();
         bar.inc(1);
-        if let Some(words) = told(&found) {
+        if let Some(words) = explain(&found) {
             bar.suspend(|| voice.note(&report.image, &words));
         }
         let instances = report.instances.len();
@@ -196,7 +196,7 @@ fn each(
     failed.map_or(Ok(()), Err)
 }
 
-/// Looks at one picture.
+/// Searches one picture.
 fn at(
     camera: &PinholeFile,
     path: &Path,
@@ -208,7 +208,7 @@ fn at(
     Ok(look(grey, camera, &path.display().to_string()))
 }
 
-/// The number that a picture's name ends in.
+/// The number at the end of a picture's name.
 fn numbered(path: &Path) -> Option<u32> {
     let stem = path.file_stem()?.to_str()?;
     let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();

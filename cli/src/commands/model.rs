@@ -1,4 +1,4 @@
-//! `premio model`: what many predictions come to.
+//! `premio model`: the summary of many predictions.
 
 use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, RecordsFormat};
 use crate::diagnostics::CliError;
@@ -20,7 +20,7 @@ use rayon::ThreadPool;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How many setups a shard has where the run is not divided by hand.
+/// The number of setups of a shard where the run is not divided by `--shard`.
 const SHARD: usize = 256;
 
 /// Runs the command.
@@ -44,7 +44,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     let file = setups(&options.setups, session)?;
     let part = input::part(&options.description, session)?;
     let run = ShardRun {
-        digest: told_apart(&part, options, &file.text),
+        digest: run_digest(&part, options, &file.text),
         part: part.name.clone(),
         description: part.written.clone(),
         text: file.text.clone(),
@@ -88,7 +88,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     });
     bar.finish_and_clear();
     match &made {
-        // A run that is interrupted goes on from what there is.
+        // An interrupted run continues from the existing shards.
         Err(CliError::Interrupted) => (),
         Err(_) if folder.was_there => (),
         _ => folder.remove(),
@@ -96,7 +96,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     made
 }
 
-/// What predicts the shards of a run.
+/// The workers that predict the shards of a run.
 struct Workers<'s> {
     observer: SetupObserver<'s>,
     run: &'s ShardRun,
@@ -105,7 +105,7 @@ struct Workers<'s> {
 }
 
 impl Workers<'_> {
-    /// Predicts the setups of a shard into its file; nothing is left of it if it is interrupted.
+    /// Predicts the setups of a shard into its file; no file remains if it is interrupted.
     fn shard(&self, path: &Path, shard: [usize; 2]) -> Result<(), CliError> {
         let Self {
             observer,
@@ -118,7 +118,7 @@ impl Workers<'_> {
     }
 }
 
-/// Predicts all shards of a run and hands the model on.
+/// Predicts all shards of a run and writes the model.
 fn whole(
     workers: &Workers<'_>,
     folder: &Parts,
@@ -147,8 +147,8 @@ fn whole(
     )?)
 }
 
-/// What this part in these setups is distinguished from others by: all that observations depend on.
-fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> String {
+/// The digest of part and setups: of everything that observations depend on.
+fn run_digest(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> String {
     let description = part.written.text.as_bytes();
     let taken = options.description.reading.part.clone().unwrap_or_default();
     let resolution = part.solid.evaluation().resolution.to_bits().to_le_bytes();
@@ -165,9 +165,9 @@ fn told_apart(part: &EvaluatedPart, options: &ModelRunOptions, setups: &str) -> 
 /// The folder of a run's shards, next to its output.
 struct Parts {
     path: PathBuf,
-    /// Whether an interrupted run left it.
+    /// Whether it remains from an interrupted run.
     was_there: bool,
-    /// Removed at the end, if the output is no file.
+    /// Removed at the end, if the output is not a file.
     _temporary: Option<tempfile::TempDir>,
 }
 
@@ -188,8 +188,7 @@ impl Parts {
         let failed = |e: std::io::Error| CliError::input(format!("{}: {e}", path.display()));
         let was_there = path.exists();
         if was_there && !resume {
-            let said =
-                "is left of a run that was interrupted: --resume goes on with it; or remove it";
+            let said = "remains from an interrupted run: continue it with --resume, or remove it";
             return Err(CliError::input(format!("{}: {said}", path.display())));
         }
         if !was_there {
@@ -202,7 +201,7 @@ impl Parts {
         })
     }
 
-    /// Whether a shard of the run is there.
+    /// Whether a complete shard of the run exists.
     fn is_whole(
         &self,
         path: &Path,
@@ -235,7 +234,7 @@ impl Parts {
         if self._temporary.is_some() {
             return;
         }
-        // What cannot be removed is of no harm.
+        // Files that cannot be removed are harmless.
         let mut index = 1;
         while fs::remove_file(self.shard(index)).is_ok() {
             index += 1;
@@ -267,7 +266,7 @@ fn summed_up(
     all.map_err(CliError::library)
 }
 
-/// Whether shards are all those of one run, in order.
+/// Checks that the shards are all those of one run, in order.
 fn check_run(shards: &[Shard]) -> Result<(), CliError> {
     let first = &shards[0].head;
     let said = |shard: &Shard, words: String| {

@@ -1,4 +1,4 @@
-//! `premio predict`: which features a sensor and a detector will find.
+//! `premio predict`: the features that a sensor and a detector find.
 
 use crate::arguments::PredictOptions;
 use crate::diagnostics::CliError;

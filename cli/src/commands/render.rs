@@ -25,7 +25,7 @@ pub fn run(options: &RenderOptions, session: Session) -> Result<(), CliError> {
     output::write(bytes, Some(&options.output))
 }
 
-/// The image of a draft's setup, by a line of sight through every pixel, with a bar for its rows.
+/// The image of a setup, by a line of sight through every pixel, with a progress bar for its rows.
 pub fn rendered(draft: &PredictedImage<'_>, seed: u64, voice: Reporter) -> Result<Grey, CliError> {
     let [_, height] = draft.conditions.sensor.resolution;
     let bar = voice.progress(height as u64);

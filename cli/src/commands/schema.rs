@@ -1,4 +1,4 @@
-//! `premio schema`: what JSON is promised to be.
+//! `premio schema`: the JSON schemas of outputs.
 
 use crate::arguments::{SchemaName, SchemaOptions};
 use crate::diagnostics::CliError;

@@ -4,10 +4,10 @@ use annotate_snippets::{Annotation, AnnotationKind, Snippet};
 use premio_text::escape;
 use std::ops::Range;
 
-/// How much of a long line is shown on either side.
+/// The number of characters of a long line that are shown on either side.
 const SHOWN: usize = 60;
 
-/// The line of a text that a message is about; of a long line the part around the place.
+/// The line of a text that a message is about; of a long line the part around the position.
 #[derive(Debug)]
 pub struct Excerpt {
     text: String,
@@ -18,7 +18,7 @@ pub struct Excerpt {
 }
 
 impl Excerpt {
-    /// The excerpt around some bytes of a text, which are in a line that counts from 1.
+    /// The excerpt around a byte range of a text, which is in a line with a number from 1.
     pub fn new(line: usize, span: &Range<usize>, text: &[u8]) -> Self {
         let at = span.start.min(text.len());
         let start = text[..at]
@@ -30,7 +30,7 @@ impl Excerpt {
             .position(|&b| b == b'\n')
             .map_or(text.len(), |i| at + i);
         let until = span.end.clamp(at, end);
-        // Of a long line a little is enough.
+        // A part of a long line is enough.
         let some = 8 * SHOWN;
         let start = start.max(at.saturating_sub(some));
         let (until, end) = (until.min(at + some), end.min(until.min(at + some) + some));
@@ -39,7 +39,7 @@ impl Excerpt {
         let before = last(&before);
         let is_cut = found.chars().count() > SHOWN;
         let found = first(&found);
-        // What follows a found text does not follow its beginning.
+        // The text after the found one does not follow its cut beginning.
         let after = if is_cut { String::new() } else { first(&after) };
         Self {
             span: before.len()..before.len() + found.len(),
@@ -48,7 +48,7 @@ impl Excerpt {
         }
     }
 
-    /// The line with its number and the place marked.
+    /// The line with its number and the marked position.
     pub fn snippet(&self) -> Snippet<'_, Annotation<'_>> {
         let place = AnnotationKind::Primary.span(self.span.clone());
         let snippet = Snippet::source(&*self.text).line_start(self.line);

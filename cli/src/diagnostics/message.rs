@@ -1,4 +1,4 @@
-//! What there is to say, perhaps with its place in a text: for people, and for programs.
+//! Messages, with their position in a text where they have one: for people, and for programs.
 
 use super::excerpt::Excerpt;
 use annotate_snippets::{Group, Level as Title, Renderer};
@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::io::{self, IsTerminal};
 use std::ops::Range;
 
-/// What is wrong, or what else there is to know.
+/// An error or a note.
 #[derive(Debug, Default)]
 pub struct Message {
     text: String,
@@ -18,7 +18,7 @@ pub struct Message {
     calls: Vec<CloseCall>,
 }
 
-/// A place in a text, and what is wrong there.
+/// A position in a text, with the error there.
 #[derive(Debug, Serialize)]
 struct Place {
     file: String,
@@ -34,7 +34,7 @@ struct Place {
 }
 
 impl Place {
-    /// A line, and no more.
+    /// A line without a column.
     fn line(file: &str, line: usize) -> Self {
         Self {
             file: file.to_owned(),
@@ -47,7 +47,7 @@ impl Place {
     }
 }
 
-/// How grave a message is.
+/// The severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
@@ -72,7 +72,7 @@ struct Line<'a> {
 }
 
 impl Message {
-    /// A text by itself.
+    /// A message without a position.
     pub fn without_excerpt(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
@@ -80,7 +80,7 @@ impl Message {
         }
     }
 
-    /// Why a text was not read, and where.
+    /// The error of a reader, with its position.
     pub fn of_reader(error: &ReadError, text: &[u8]) -> Self {
         Self {
             text: error.to_string(),
@@ -97,7 +97,7 @@ impl Message {
         }
     }
 
-    /// What is wrong with some bytes of a text.
+    /// The error of a byte range of a text.
     pub fn at(name: &str, text: &[u8], span: &Range<usize>, words: &str) -> Self {
         let LineColumn { line, column } = LineColumn::new(text, span.start);
         Self {
@@ -111,7 +111,7 @@ impl Message {
         }
     }
 
-    /// What there is to know of a line of a file.
+    /// A message about a line of a file.
     pub fn at_line(file: &str, line: usize, text: &str) -> Self {
         Self {
             text: text.to_owned(),
@@ -120,7 +120,7 @@ impl Message {
         }
     }
 
-    /// The same with the close calls that it is about.
+    /// The message with its close calls.
     pub fn with_calls(self, calls: &[CloseCall]) -> Self {
         let calls = calls.to_vec();
         Self { calls, ..self }
@@ -141,7 +141,7 @@ impl Message {
         renderer.term_width(WIDTH).render(&[group])
     }
 
-    /// A note in plain words, with its file and line where it has any.
+    /// A note as text, with its file and line where it has them.
     pub fn note(&self) -> String {
         let note = match &self.place {
             Some(Place { file, line, .. }) => format!("{file}:{line}: note: {}", self.text),
@@ -164,10 +164,10 @@ impl Message {
     }
 }
 
-/// The most columns of an excerpt that are shown.
+/// The greatest width of an excerpt, in columns.
 const WIDTH: usize = 200;
 
-/// Whether the environment asks for no colours (no-color.org).
+/// Whether the environment disables colours (no-color.org).
 fn is_without_colours() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }

@@ -1,4 +1,4 @@
-//! What goes to standard error when something is to be said.
+//! Messages on standard error.
 
 mod excerpt;
 mod message;
@@ -25,26 +25,26 @@ pub enum CliError {
     Input(Box<Message>),
     /// The geometry is beyond a stated limit, or a close call under `--strict`.
     Limit(Box<Message>),
-    /// A self-check does not hold; the report says which.
+    /// A self-check failed; the report names it.
     Check,
-    /// It was interrupted, and said how far it came.
+    /// It was interrupted, and reported its progress.
     Interrupted,
-    /// Nobody reads the output any more.
+    /// The reader of the output is gone.
     BrokenPipe,
 }
 
 impl CliError {
-    /// Wrong input, in a line.
+    /// Wrong input, as one line.
     pub fn input(text: impl Into<String>) -> Self {
         Self::Input(Box::new(Message::without_excerpt(text)))
     }
 
-    /// Beyond a limit, in a line.
+    /// Beyond a limit, as one line.
     pub fn limit(text: impl Into<String>) -> Self {
         Self::Limit(Box::new(Message::without_excerpt(text)))
     }
 
-    /// A text that was not read.
+    /// A text that could not be read.
     pub fn read(error: &ReadError, text: &[u8]) -> Self {
         let message = Box::new(Message::of_reader(error, text));
         match error.kind {
@@ -53,7 +53,7 @@ impl CliError {
         }
     }
 
-    /// What is wrong with some bytes of a text, or with the text as a whole.
+    /// The error of a byte range of a text, or of the text as a whole.
     pub fn at(
         name: &str,
         text: &str,
@@ -67,7 +67,7 @@ impl CliError {
         }))
     }
 
-    /// What is wrong with some bytes of a file that is perhaps no text.
+    /// The error of a byte range of a file that may not be text.
     pub fn in_bytes(name: &str, bytes: &[u8], span: Range<usize>, words: &str) -> Self {
         Self::Input(Box::new(Message::at(name, bytes, &span, words)))
     }
@@ -77,7 +77,7 @@ impl CliError {
         Self::at(name, text, error.span(text), error)
     }
 
-    /// A setup in which nothing can be predicted of a part.
+    /// A setup in which nothing can be predicted for a part.
     pub fn stage(part: &str, [setup, text]: [&str; 2], error: &StageError) -> Self {
         match error.setup_error() {
             Some(error) => Self::setup(setup, &error, text),
@@ -90,7 +90,7 @@ impl CliError {
         Self::limit(format!("{name}: {error}"))
     }
 
-    /// What the library says of a description.
+    /// The library's error of a description.
     pub fn described(name: &str, error: premio::Error, text: &[u8]) -> Self {
         match error {
             premio::Error::Read(error) => Self::read(&error, text),
@@ -99,7 +99,7 @@ impl CliError {
         }
     }
 
-    /// What the library says of work that was cancelled, and of shards.
+    /// The library's error of cancelled work, and of shards.
     pub fn library(error: premio::Error) -> Self {
         match error {
             premio::Error::Cancelled(_) => Self::Interrupted,
@@ -123,13 +123,13 @@ impl CliError {
     }
 }
 
-/// For whom the program speaks.
+/// The reporter of messages, for people or for programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reporter {
     /// For people.
     #[default]
     Words,
-    /// For programs: a line of JSON each (premio.message/1).
+    /// For programs: one line of JSON per message (premio.message/1).
     Json,
 }
 
@@ -142,7 +142,7 @@ impl Reporter {
         }
     }
 
-    /// What arguments that are wrong seem to ask for.
+    /// The reporter that wrong arguments seem to request.
     pub fn guessed(arguments: &[OsString]) -> Self {
         Self::new(arguments.iter().any(|word| word == "--json"))
     }
@@ -152,7 +152,7 @@ impl Reporter {
         self == Self::Json
     }
 
-    /// Says what happened, and how the program ends.
+    /// Reports a failure, and returns the exit status.
     pub fn fail(self, failure: CliError) -> ExitCode {
         let (message, status) = match failure {
             CliError::Input(message) => (message, 2),
@@ -168,21 +168,21 @@ impl Reporter {
         ExitCode::from(status)
     }
 
-    /// What clap has to say: help, or what is wrong with the arguments.
+    /// Reports a message of clap: help, or an error of the arguments.
     pub fn usage(self, message: &clap::Error) -> ExitCode {
         let text = message.render().to_string();
         let shown = escape::terminal(&text);
         match (message.use_stderr(), self) {
             (true, Self::Json) => return self.fail(CliError::input(text.trim_end())),
-            // Arguments may hold anything.
+            // Arguments may contain any characters.
             (true, Self::Words) if shown != text => say(&shown),
-            // A broken pipe behind `--help` is nobody's concern.
+            // A broken pipe after `--help` is ignored.
             _ => drop(message.print()),
         }
         ExitCode::from(if message.use_stderr() { 2 } else { 0 })
     }
 
-    /// Tells the notes of a reader.
+    /// Reports the notes of a reader.
     pub fn notes(self, name: &str, text: &[u8], notes: &[Note]) {
         for note in notes {
             let line = LineColumn::new(text, note.span.start).line;
@@ -190,12 +190,12 @@ impl Reporter {
         }
     }
 
-    /// Tells what else there is to know of an output.
+    /// Reports a note about an output.
     pub fn note(self, name: &str, text: &str) {
         self.tell(&Message::without_excerpt(format!("{name}: {text}")));
     }
 
-    /// Tells the close calls that were let pass.
+    /// Reports the accepted close calls.
     pub fn close_calls(self, name: &str, resolution: f64, calls: &[CloseCall]) {
         if !calls.is_empty() {
             let text = close_calls(name, resolution, calls);
@@ -210,7 +210,7 @@ impl Reporter {
         }
     }
 
-    /// Shows what is being done, and since when, until it is dropped; on a terminal only.
+    /// Shows the current work and its duration until it is dropped; on a terminal only.
     pub fn working(self, what: &'static str) -> Working {
         let bar = self.bar(ProgressBar::new_spinner(), "{spinner} {msg}, {elapsed}");
         bar.set_message(what);
@@ -218,7 +218,7 @@ impl Reporter {
         Working(bar)
     }
 
-    /// A bar that shows how far some work is, on a terminal only.
+    /// A progress bar, on a terminal only.
     pub fn progress(self, of: u64) -> ProgressBar {
         let look = "{wide_bar} {human_pos} of {human_len}, {eta} left{msg}";
         self.bar(ProgressBar::new(of), look)
@@ -235,7 +235,7 @@ impl Reporter {
     }
 }
 
-/// Work whose sign is on the terminal until it is dropped.
+/// Work that is shown on the terminal until it is dropped.
 #[derive(Debug)]
 pub struct Working(ProgressBar);
 
@@ -247,14 +247,14 @@ impl Drop for Working {
 
 /// Writes a text to standard error.
 fn say(text: &str) {
-    // Where even that fails there is nowhere left to say so.
+    // If this fails, there is no other output for the error.
     let _ = writeln!(io::stderr().lock(), "{}", text.trim_end());
 }
 
-/// How many close calls are listed before they are only counted.
+/// The number of close calls that are listed; further ones are only counted.
 const LISTED: usize = 20;
 
-/// The close calls of an evaluation: what, where, how close.
+/// The close calls of an evaluation: question, distance and position.
 fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
     let mut text = format!(
         "{name}: {} close to the resolution of {resolution:.3e}",
@@ -274,8 +274,8 @@ fn close_calls(name: &str, resolution: f64, calls: &[CloseCall]) -> String {
         text += &format!("\n  and {} more", calls.len() - LISTED);
     }
     if calls.iter().any(|call| call.distance.abs() <= resolution) {
-        text += "\n  what is no farther apart than the resolution was taken for one: \
-                 `--resolution D` sets another, `--exact` none";
+        text += "\n  points within the resolution of each other were merged: \
+                 `--resolution D` sets another resolution, `--exact` none";
     }
     text
 }

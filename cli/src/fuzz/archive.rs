@@ -15,7 +15,7 @@ pub struct Archive {
     formats: Vec<Format>,
 }
 
-/// The name of the manifest in the folder: JSON, a line for each model.
+/// The name of the manifest in the folder: one line of JSON per model.
 pub const MANIFEST: &str = "manifest.jsonl";
 
 /// A line of the manifest.
@@ -23,7 +23,7 @@ pub const MANIFEST: &str = "manifest.jsonl";
 struct Line<'a> {
     profile: &'static str,
     seed: u64,
-    /// `right`, and then there are measures; `refused` or `wrong`.
+    /// `right`, with measures; `refused` or `wrong`.
     verdict: &'static str,
     measures: Option<&'a TrialMeasures>,
     files: Vec<Written>,
@@ -33,13 +33,12 @@ struct Line<'a> {
 #[derive(Debug, Serialize)]
 struct Written {
     file: String,
-    /// Whether what is read from it is the model's tree to the last digit; a csg has its turns in
-    /// matrices.
+    /// Whether it is read as exactly the model's tree; a csg has its rotations in matrices.
     same_tree: bool,
 }
 
 impl Archive {
-    /// Makes the folder, if it is not there.
+    /// Makes the folder, if it does not exist.
     pub fn new(folder: &Path, formats: &[Format]) -> Result<Self, FuzzError> {
         std::fs::create_dir_all(folder).map_err(|e| FuzzError::file(folder, e))?;
         Ok(Self {
@@ -48,7 +47,7 @@ impl Archive {
         })
     }
 
-    /// Writes a model in every format; gives its line of the manifest.
+    /// Writes a model in every format; returns its line of the manifest.
     pub fn put(
         &self,
         item: Item,
@@ -81,7 +80,7 @@ impl Archive {
         serde_json::to_string(&line).map_err(|e| FuzzError::file(&self.folder, e.into()))
     }
 
-    /// Writes the manifest of all that is done.
+    /// Writes the manifest of all finished models.
     pub fn finish(&self, state: &RunState) -> Result<(), FuzzError> {
         let path = self.folder.join(MANIFEST);
         let mut text = String::new();

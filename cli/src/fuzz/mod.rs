@@ -1,8 +1,8 @@
-//! Fuzzing runs: many seeds dealt to worker processes, and what was found.
+//! Fuzzing runs: many seeds distributed to worker processes, and their findings.
 //!
-//! [`worker`] puts a part through [`premio_verify::trial`] in a process that may hang or die; [`run`] deals
-//! many parts to threads, [`state`] keeps what is done, [`summary`] reports it, and [`archive`] keeps the
-//! models.
+//! [`worker`] runs [`premio_verify::trial`] on a part in a process that may hang or die; [`run`]
+//! distributes many parts to threads, [`state`] keeps the finished ones, [`summary`] reports them,
+//! and [`archive`] keeps the models.
 
 pub mod archive;
 pub mod run;
@@ -32,7 +32,7 @@ pub enum FuzzError {
         /// The file.
         path: String,
     },
-    /// A worker process cannot be started, or says what is no answer.
+    /// A worker process cannot be started, or gives no valid answer.
     #[error("a worker process: {0}")]
     Worker(io::Error),
 }

@@ -1,4 +1,4 @@
-//! Many trees on many threads.
+//! Trials of many trees on many threads.
 
 use super::FuzzError;
 use super::archive::Archive;
@@ -13,34 +13,35 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How a run is done, besides its plan.
+/// The configuration of a run, in addition to its plan.
 #[derive(Clone, Copy, Debug)]
 pub struct RunConfig<'a> {
-    /// How many threads there are.
+    /// The number of threads.
     pub threads: usize,
-    /// Set where the run is to stop.
+    /// Set when the run shall stop.
     pub stop: &'a AtomicBool,
-    /// The file in which the state is kept.
+    /// The file of the state.
     pub state: Option<&'a Path>,
-    /// The folder to which models are written.
+    /// The folder for models.
     pub archive: Option<&'a Archive>,
 }
 
-/// How often it is told how far the run is.
+/// The interval between progress reports.
 const TELL: Duration = Duration::from_millis(100);
 
-/// How often the state is saved, and how many times longer than a save there is none.
+/// The least interval between saves of the state, and its least ratio to the duration of a save.
 const SAVE: Duration = Duration::from_secs(5);
 const SAVING: u32 = 20;
 
-/// Of each kind and profile so many finds are made small, the first by seed; of refusals one.
+/// The number of findings of each kind and profile that are shrunk, the first by seed; one for
+/// refusals.
 const SHRUNK: usize = 5;
 
-/// How many smaller trees are tried for a find; each that hangs takes the limit.
+/// The most smaller trees that are tried for a finding; each that hangs takes the time limit.
 const TRIES: usize = 1000;
 const TRIES_IN_TIME: usize = 30;
 
-/// What all threads share.
+/// The data that all threads share.
 #[derive(Clone, Copy)]
 struct Shared<'a> {
     how: &'a RunConfig<'a>,
@@ -48,7 +49,7 @@ struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    /// No thread leaves the state half changed.
+    /// No thread leaves the state inconsistent.
     fn state(&self) -> MutexGuard<'a, RunState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -58,8 +59,8 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// Tries what is left of a plan, then makes small what failed, and gives what was found; less where
-/// it is stopped. `make` makes what examines trees, for each thread; `tell` is told how far it is.
+/// Runs the remaining trials of a plan, then shrinks the failures, and returns the findings; fewer
+/// if it is stopped. `make` makes the examiner of each thread; `tell` receives the progress.
 pub fn run<E: Examine>(
     state: RunState,
     how: &RunConfig<'_>,
@@ -103,12 +104,12 @@ fn try_all<E: Examine>(
         shared.state().record(number, outcome, seconds, line);
         Ok(true)
     };
-    // Few trees need few processes.
+    // Few trees need only few processes.
     let threads = left.min(shared.how.threads as u64) as usize;
     dispatch(shared, threads, make, &work, tell)
 }
 
-/// The next tree that is not done.
+/// The next tree that is not finished.
 fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<(u64, Item)> {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
@@ -120,7 +121,7 @@ fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<(u64, Item)> {
     }
 }
 
-/// Makes the first finds of each kind small.
+/// Shrinks the first findings of each kind.
 fn shrink_all<E: Examine>(
     shared: Shared<'_>,
     make: &(impl Fn() -> E + Sync),
@@ -133,7 +134,7 @@ fn shrink_all<E: Examine>(
             return Ok(false);
         };
         let small = job.small(examiner)?;
-        // One that was stopped is not as small as it gets.
+        // A finding whose shrinking was stopped is not minimal.
         if shared.is_stopped() {
             return Ok(false);
         }
@@ -149,7 +150,7 @@ fn shrink_all<E: Examine>(
     )
 }
 
-/// Lets threads work until there is no more work, and tells and saves meanwhile.
+/// Runs threads until there is no more work, and meanwhile reports and saves.
 fn dispatch<E: Examine>(
     shared: Shared<'_>,
     threads: usize,
@@ -209,7 +210,7 @@ fn until_done<E>(
     Ok(())
 }
 
-/// Saves the state now and then: the more seldom, the longer it takes.
+/// Saves the state at intervals, which are longer the longer a save takes.
 #[derive(Default)]
 struct Saver {
     last: Option<(Instant, Duration)>,
@@ -229,21 +230,21 @@ impl Saver {
     }
 }
 
-/// In which way a tree fails.
+/// The kind of a tree's failure.
 #[derive(Clone, Debug)]
 enum Way {
     Wrong(FailureKind),
     Refused(String),
 }
 
-/// A find to be made small.
+/// A finding to shrink.
 #[derive(Clone, Debug)]
 struct Job {
     item: Item,
     way: Way,
 }
 
-/// The first finds of each kind and profile that are not small yet.
+/// The first findings of each kind and profile that are not shrunk yet.
 fn jobs(state: &RunState) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (&profile, tally) in &state.tallies {
@@ -318,7 +319,7 @@ mod tests {
     use premio_verify::trial::{TrialConfig, TrialMeasures};
     use std::io;
 
-    /// Holds that tori are wrong and spheres refused; stops after some trees.
+    /// An examiner by which tori are wrong and spheres refused; it stops after some trees.
     struct Planted<'a> {
         left: &'a AtomicUsize,
         stop: &'a AtomicBool,
@@ -369,7 +370,7 @@ mod tests {
         }
     }
 
-    /// A run that is stopped after so many questions.
+    /// A run that is stopped after a number of trials.
     fn ran(state: RunState, threads: usize, questions: usize, path: Option<&Path>) -> RunState {
         let (stop, left) = (AtomicBool::new(false), AtomicUsize::new(questions));
         let how = RunConfig {
@@ -385,18 +386,18 @@ mod tests {
         run(state, &how, make, |_| {}).unwrap()
     }
 
-    /// What does not depend on time.
-    fn told(state: &RunState) -> serde_json::Value {
-        let mut told = serde_json::to_value(RunSummary::new(state)).unwrap();
-        told.as_object_mut().unwrap().remove("seconds");
-        told
+    /// The part of a state that does not depend on time.
+    fn timeless(state: &RunState) -> serde_json::Value {
+        let mut timeless = serde_json::to_value(RunSummary::new(state)).unwrap();
+        timeless.as_object_mut().unwrap().remove("seconds");
+        timeless
     }
 
     #[test]
     fn the_summary_is_the_same_for_any_number_of_threads() {
         let one = ran(RunState::new(plan()), 1, usize::MAX, None);
         let many = ran(RunState::new(plan()), 7, usize::MAX, None);
-        assert_eq!(told(&one), told(&many));
+        assert_eq!(timeless(&one), timeless(&many));
         let summary = RunSummary::new(&one);
         assert!(summary.complete && summary.wrong > 0 && summary.trees == 100);
     }
@@ -425,14 +426,14 @@ mod tests {
         let whole = ran(RunState::new(plan()), 2, usize::MAX, None);
         let half = ran(RunState::new(plan()), 2, 50, Some(&path));
         assert!(half.done() > 0 && half.done() < 100);
-        // Stopped again, while failures are made small.
+        // Stopped again, while failures are shrunk.
         let read = RunState::load(&path, plan(), &Default::default()).unwrap();
-        assert_eq!(told(&read), told(&half));
+        assert_eq!(timeless(&read), timeless(&half));
         let most = ran(read, 2, 100, Some(&path));
         assert_eq!(most.done(), 100);
-        assert_ne!(told(&most), told(&whole));
+        assert_ne!(timeless(&most), timeless(&whole));
         let read = RunState::load(&path, plan(), &Default::default()).unwrap();
         let rest = ran(read, 3, usize::MAX, Some(&path));
-        assert_eq!(told(&rest), told(&whole));
+        assert_eq!(timeless(&rest), timeless(&whole));
     }
 }

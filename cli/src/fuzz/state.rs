@@ -1,4 +1,4 @@
-//! What a run is, and how far it is: kept in a file, so that it goes on where it ended.
+//! The plan and the state of a run, kept in a file, so that it continues where it ended.
 
 use super::FuzzError;
 use crate::diagnostics::CliError;
@@ -21,19 +21,19 @@ pub struct Plan {
     pub profiles: Vec<Profile>,
     /// The first seed.
     pub from: u64,
-    /// How many seeds of each profile.
+    /// The number of seeds of each profile.
     pub count: u64,
-    /// What is asked of each tree.
+    /// The configuration of the trial of each tree.
     pub terms: TrialConfig,
-    /// After how many seconds a tree is given up.
+    /// The time limit of a tree, in seconds.
     pub limit: f64,
-    /// Whether what failed is made small.
+    /// Whether failures are shrunk.
     pub shrink: bool,
-    /// Where models are written, and how.
+    /// The folder and the formats of models.
     pub write: Option<Writing>,
 }
 
-/// Where models are written, and how.
+/// The folder and the formats of models.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Writing {
     /// The folder.
@@ -51,76 +51,76 @@ pub struct Item {
     pub seed: u64,
 }
 
-/// Something that is wrong or refused.
+/// A finding: a wrong or a refused tree.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Find {
-    /// What was said.
+    /// The message.
     pub text: String,
     /// The smallest tree found that fails in the same way, in padl.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shrunk: Option<String>,
 }
 
-/// Finds by seed.
+/// Findings by seed.
 pub type Finds = BTreeMap<u64, Find>;
 
-/// What was found in the trees of a profile.
+/// The results of the trees of a profile.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Tally {
-    /// How many trees were right.
+    /// The number of right trees.
     pub right: u64,
-    /// How many were refused.
+    /// The number of refused ones.
     pub refused: u64,
-    /// How many were wrong.
+    /// The number of wrong ones.
     pub wrong: u64,
     /// The refused ones, by reason.
     pub refusals: BTreeMap<String, Finds>,
     /// The wrong ones, by kind; one tree may be of several.
     pub faults: BTreeMap<FailureKind, Finds>,
-    /// Those of which a check does not tell.
+    /// Those with an undetermined check.
     #[serde(default, rename = "untold")]
     pub undetermined: Finds,
-    /// How many trees had close calls.
+    /// The number of trees with close calls.
     pub close_trees: u64,
-    /// How many close calls there were.
+    /// The number of close calls.
     pub close_calls: u64,
     /// The lines of the manifest, by seed, where models are written.
     pub lines: BTreeMap<u64, String>,
-    /// How long all trials took, in seconds.
+    /// The duration of all trials, in seconds.
     pub seconds: f64,
-    /// The seed that took longest, and its seconds.
+    /// The seed of the longest trial, and its seconds.
     pub longest: Option<(u64, f64)>,
     /// Those that took longer than [`SLOW`], by seed, in seconds.
     pub slow: BTreeMap<u64, f64>,
 }
 
-/// Trials that take longer are named, in seconds.
+/// The duration, in seconds, above which a trial is listed.
 pub const SLOW: f64 = 2.0;
 
 /// The schema of the file.
 const SCHEMA: &str = "premio.fuzz.state/1";
 
-/// How far a run is.
+/// The state of a run.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct RunState {
     schema: String,
     /// What to try.
     pub plan: Plan,
-    /// The items that are done: from the first, included, to the second, not included.
+    /// The finished items, as half-open ranges.
     done: BTreeMap<u64, u64>,
-    /// What was found.
+    /// The results by profile.
     pub tallies: BTreeMap<Profile, Tally>,
-    /// How long it took so far, in seconds.
+    /// The duration so far, in seconds.
     pub seconds: f64,
 }
 
 impl Plan {
-    /// How many trees there are.
+    /// The number of trees.
     pub fn trees(&self) -> u64 {
         self.count.saturating_mul(self.profiles.len() as u64)
     }
 
-    /// The tree of a number from 0: seed by seed, every profile of each.
+    /// The tree of an index from 0: seed by seed, every profile of each.
     pub fn item(&self, number: u64) -> Option<Item> {
         let profiles = self.profiles.len() as u64;
         let profile = *self.profiles.get(number.checked_rem(profiles)? as usize)?;
@@ -130,7 +130,7 @@ impl Plan {
 }
 
 impl Tally {
-    /// How many trees were tried.
+    /// The number of tried trees.
     pub fn trees(&self) -> u64 {
         self.right + self.refused + self.wrong
     }
@@ -181,10 +181,10 @@ impl RunState {
         }
     }
 
-    /// The run of a file; a new one where there is no file.
+    /// Loads the run of a file, or starts a new one where there is no file.
     ///
     /// # Errors
-    /// The file cannot be read, is longer than the limit, or holds no state of this plan.
+    /// The file cannot be read, is longer than the limit, or contains no state of this plan.
     pub fn load(path: &Path, plan: Plan, limits: &InputLimits) -> Result<Self, CliError> {
         if fs::metadata(path).is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
             return Ok(Self::new(plan));
@@ -214,13 +214,13 @@ impl RunState {
             true => Ok(state),
             false => {
                 let span = document.span("done").unwrap_or(0..0);
-                let words = "`done` is not of as many trees as `tallies`".to_owned();
+                let words = "`done` and `tallies` count different numbers of trees".to_owned();
                 Err(refused(span, words))
             }
         }
     }
 
-    /// Whether what is done is of the plan, and as many trees are counted.
+    /// Whether the finished items belong to the plan, and as many trees are counted.
     fn is_consistent(&self) -> bool {
         let mut end = 0;
         for (&from, &to) in &self.done {
@@ -235,24 +235,24 @@ impl RunState {
         end <= self.plan.trees() && counted == Some(self.done())
     }
 
-    /// Saves the run: the whole file, or none.
+    /// Saves the run: the whole file or none.
     pub fn save(&self, path: &Path) -> Result<(), FuzzError> {
         let text = serde_json::to_string(self).map_err(|e| FuzzError::file(path, e.into()))?;
         premio::files::write_whole(&text, path).map_err(|source| FuzzError::file(path, source))
     }
 
-    /// How many trees are done.
+    /// The number of finished trees.
     pub fn done(&self) -> u64 {
         self.done.iter().map(|(from, to)| to - from).sum()
     }
 
-    /// Whether a tree is done.
+    /// Whether a tree is finished.
     pub fn is_done(&self, number: u64) -> bool {
         let before = self.done.range(..=number).next_back();
         before.is_some_and(|(_, &to)| number < to)
     }
 
-    /// Puts down the outcome of a tree, how long it took, and its line of the manifest.
+    /// Records the outcome of a tree, its duration, and its line of the manifest.
     pub fn record(
         &mut self,
         number: u64,
@@ -272,7 +272,7 @@ impl RunState {
         self.mark(number);
     }
 
-    /// Ranges that meet become one.
+    /// Adjacent ranges are merged.
     fn mark(&mut self, number: u64) {
         let to = self.done.remove(&(number + 1)).unwrap_or(number + 1);
         match self.done.range_mut(..number).next_back() {
@@ -290,7 +290,7 @@ fn byte_of(text: &str, line: usize, column: usize) -> usize {
     before.map(str::len).sum::<usize>() + column.saturating_sub(1)
 }
 
-/// What is wrong, without the place, which is told before it.
+/// The error without its position, which is reported before it.
 fn without_place(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
@@ -342,7 +342,7 @@ mod tests {
             b.record((n * 7 + 3) % 20, outcome((n * 7 + 3) % 20), 1.0, None);
             assert_eq!((a.done(), b.done()), (n + 1, n + 1));
         }
-        // A second time is no other tree.
+        // A second record is not another tree.
         b.record(3, outcome(3), 1.0, None);
         for state in [&mut a, &mut b] {
             assert_eq!(state.done, BTreeMap::from([(0, 20)]));

@@ -1,7 +1,7 @@
-//! What a run found, as JSON (premio.fuzz/1) and as text.
+//! The summary of a run, as JSON (premio.fuzz/1) and as text.
 //!
-//! All but the times is the same for any number of threads: finds are in the order of profiles,
-//! kinds and seeds, and the times stand apart, at the end.
+//! Everything except the times is the same for any number of threads: findings are in the order of
+//! profiles, kinds and seeds, and the times are separate, at the end.
 
 use super::state::{Find, Finds, Plan, RunState, Tally};
 use premio_verify::generator::profile::Profile;
@@ -16,17 +16,17 @@ pub struct RunSummary {
     plan: Plan,
     /// Whether every tree of the plan was tried.
     pub complete: bool,
-    /// How many trees were tried.
+    /// The number of tried trees.
     pub trees: u64,
     right: u64,
     refused: u64,
-    /// How many were wrong.
+    /// The number of wrong ones.
     pub wrong: u64,
     profiles: BTreeMap<Profile, Part>,
     seconds: Seconds,
 }
 
-/// What was found in a profile.
+/// The results of a profile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Part {
     trees: u64,
@@ -35,13 +35,13 @@ struct Part {
     wrong: u64,
     refusals: Vec<Kind>,
     faults: Vec<Kind>,
-    /// The trees of which a check does not tell; none is there where all tell.
+    /// The trees with an undetermined check.
     #[serde(rename = "untold")]
     undetermined: Vec<Kind>,
     close_calls: CloseCalls,
 }
 
-/// The finds of one kind.
+/// The findings of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Kind {
     kind: String,
@@ -71,7 +71,7 @@ struct Seconds {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Times {
-    /// Of all trials together.
+    /// The sum of all trials.
     trials: f64,
     longest: Option<Timed>,
     slow: Vec<Timed>,
@@ -154,7 +154,7 @@ impl Times {
     }
 }
 
-/// How many finds of a kind are listed in the text; JSON has all.
+/// The number of findings of a kind that are listed in the text; JSON has all.
 const LISTED: usize = 10;
 
 impl fmt::Display for RunSummary {

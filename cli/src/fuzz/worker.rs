@@ -1,8 +1,8 @@
-//! Trials in processes of their own: a hang, or an overflow of the stack or of memory, is an outcome.
+//! Trials in separate processes: a hang, or an overflow of the stack or of memory, is an outcome.
 //!
-//! A worker process takes models, one a line, and answers with outcomes, one a line. It serves until
-//! it dies or takes too long; then it is ended, and the tree is tried once more in a new process,
-//! which alone counts: what went wrong must be the tree's doing, and not that of those before it.
+//! A worker process takes models, one per line, and answers with outcomes, one per line. It serves
+//! until it dies or takes too long; then it is ended. The tree is tried once more in a new process,
+//! which alone counts, so that a failure is caused by the tree and not by earlier ones.
 
 use premio_verify::generator::model::PartModel;
 use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, guarded};
@@ -14,13 +14,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// What puts trees to the trial.
+/// An examiner of trees.
 pub trait Examine {
-    /// The outcome of a tree; none where the run is to stop.
+    /// The outcome of a tree; none where the run shall stop.
     fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>>;
 }
 
-/// A process that examines trees, started when it is needed.
+/// A process that examines trees, started on demand.
 #[derive(Debug)]
 pub struct Worker<'a> {
     terms: TrialConfig,
@@ -35,12 +35,12 @@ struct Process {
     child: Child,
     input: ChildStdin,
     answers: Receiver<String>,
-    /// What it says on standard error: its last words.
+    /// Its standard error.
     said: File,
     served: usize,
 }
 
-/// How one attempt ended.
+/// The end of one attempt.
 enum Attempt {
     Answered(TrialOutcome),
     Stopped,
@@ -48,14 +48,14 @@ enum Attempt {
     Died(String),
 }
 
-/// How often it is looked whether the run is to stop.
+/// The interval between checks whether the run shall stop.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// How much of a process's last words is kept, in bytes.
+/// The number of last bytes of a process's standard error that are kept.
 const LAST_WORDS: u64 = 300;
 
 impl<'a> Worker<'a> {
-    /// A worker on these terms, with a limit of time for each tree, that gives up where `stop` is
+    /// A worker with a configuration and a time limit for each tree, which gives up where `stop` is
     /// set.
     pub fn new(terms: TrialConfig, limit: Duration, stop: &'a AtomicBool) -> Self {
         Self {
@@ -174,7 +174,7 @@ impl Process {
         self.input.flush()
     }
 
-    /// How a process ended, and the end of what it said.
+    /// The end of a process, and the end of its standard error.
     fn last_words(&mut self) -> io::Result<String> {
         let status = self.child.wait()?;
         let length = self.said.seek(io::SeekFrom::End(0))?;
@@ -194,13 +194,13 @@ impl Process {
     }
 }
 
-/// How much memory a worker may have, in bytes: what asks for more dies.
+/// The memory limit of a worker, in bytes: it dies if it requests more.
 const MEMORY: u64 = 4 << 30;
 
 /// The worker's side: answers models from standard input until there are no more.
 pub fn serve(terms: &TrialConfig, limit: Duration) -> io::Result<()> {
     limit_memory();
-    // Panics are caught and told as outcomes.
+    // Panics are caught and reported as outcomes.
     std::panic::set_hook(Box::new(|_| {}));
     let since: &'static Mutex<Option<Instant>> = Box::leak(Box::default());
     watch(since, limit);
@@ -222,7 +222,8 @@ pub fn serve(terms: &TrialConfig, limit: Duration) -> io::Result<()> {
     Ok(())
 }
 
-/// Ends the process where a tree takes well beyond the limit: the run that would do so is gone.
+/// Ends the process where a tree takes far longer than the limit: then the run that would end it is
+/// gone.
 fn watch(since: &'static Mutex<Option<Instant>>, limit: Duration) {
     std::thread::spawn(move || {
         loop {
@@ -242,7 +243,7 @@ fn limit_memory() {
         current: Some(bytes),
         maximum: Some(bytes),
     };
-    // A stricter limit may stand already.
+    // A stricter limit may already be set.
     let _ = setrlimit(Resource::As, most(MEMORY));
     let _ = setrlimit(Resource::Core, most(0));
 }

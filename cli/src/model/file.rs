@@ -8,10 +8,10 @@ use premio_predict::model::consistency::SourceLimits;
 use premio_predict::model::file::{ModelError, ModelFile, parse};
 use std::path::Path;
 
-/// A model, with its text, at whose lines it is refused.
+/// A model with its text, for errors at its lines.
 #[derive(Debug)]
 pub struct ReadModel {
-    /// What it says.
+    /// Its content.
     pub file: ModelFile,
     name: String,
     text: String,
@@ -21,7 +21,7 @@ impl ReadModel {
     /// Reads a model.
     ///
     /// # Errors
-    /// The file is none, is of another schema, says what does not add up, or is not as it was written.
+    /// The file is not a model, has another schema, is inconsistent, or was changed after it was written.
     pub fn read(path: &Path, session: Session) -> Result<Self, CliError> {
         let text = session.limits.read_text(path)?;
         let name = path.display().to_string();
@@ -31,10 +31,10 @@ impl ReadModel {
         }
     }
 
-    /// The part that its description describes.
+    /// The part of its description.
     ///
     /// # Errors
-    /// The description is none, or the model is of another part.
+    /// The description is invalid, or the model is of another part.
     pub fn part(&self, session: Session) -> Result<EvaluatedPart, CliError> {
         let written = &self.file.head.description;
         let failed = |error: ModelError| refused(&self.name, &self.text, &error);

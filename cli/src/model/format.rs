@@ -1,4 +1,4 @@
-//! The bytes of a model, in the format that is requested.
+//! The bytes of a model, in the requested format.
 
 use crate::arguments::{ModelOutput, RecordsFormat};
 use crate::diagnostics::CliError;
@@ -8,8 +8,8 @@ use premio_predict::model::record::Record;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// The format that is requested, by its name or by the file's ending; refused where the program
-/// cannot write it, before anything is predicted.
+/// The requested format, by its name or by the file's ending; refused before anything is predicted,
+/// where the program cannot write it.
 pub fn requested(output: &ModelOutput) -> Result<RecordsFormat, CliError> {
     let ending = output.output.as_deref().and_then(Path::extension);
     let by_ending = match ending.is_some_and(|e| e.eq_ignore_ascii_case("parquet")) {
@@ -30,7 +30,7 @@ fn without() -> CliError {
     )
 }
 
-/// The bytes of a model, which hold its digest.
+/// The bytes of a model, which contain its digest.
 pub fn bytes(records: Vec<Record>, format: RecordsFormat) -> Result<Vec<u8>, CliError> {
     let records = sealed(records)?;
     match format {

@@ -1,4 +1,4 @@
-//! What tests of the program from outside share.
+//! Common functions of the tests of the program from outside.
 #![allow(dead_code, reason = "no test needs all of it")]
 
 use std::fs;
@@ -42,19 +42,19 @@ pub const CAMERA: &str = r#"{"K": [[290.9, 0, 79.5], [0, 290.9, 59.5], [0, 0, 1]
 /// A JPEG of 160 by 120 grey pixels, written by libjpeg.
 pub const JPEG: &[u8] = include_bytes!("../pictures/grey.jpg");
 
-/// The program with these words behind its name, in a folder.
+/// The program with arguments, in a folder.
 pub fn command(folder: &Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_premio"));
     command.current_dir(folder).args(words.split_whitespace());
     command
 }
 
-/// What the program does.
+/// The output of the program.
 pub fn premio(folder: &Path, words: &str) -> Output {
     command(folder, words).output().unwrap()
 }
 
-/// What the program says on its standard error.
+/// The standard error of the program.
 pub fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
@@ -93,7 +93,7 @@ pub fn prepared() -> TempDir {
     folder
 }
 
-/// What is said of words that are wrong, with all files as they were.
+/// The message about wrong arguments; all files must stay unchanged.
 #[track_caller]
 pub fn refused(folder: &Path, words: &str) -> String {
     let files = || {
@@ -116,7 +116,7 @@ pub fn refused(folder: &Path, words: &str) -> String {
     text
 }
 
-/// The published schema of a format, held against what the program tells of it.
+/// The published schema of a format, compared with the one that the program prints.
 pub fn published(folder: &Path, format: &str) -> jsonschema::Validator {
     let output = premio(folder, &format!("schema {format}"));
     assert!(output.status.success(), "{output:?}");

@@ -1,4 +1,4 @@
-//! The ellipse of least squares.
+//! Least-squares fit of an ellipse.
 
 use nalgebra::{Cholesky, Matrix2, Matrix3, SymmetricEigen, Vector2};
 
@@ -15,18 +15,18 @@ pub struct EllipseFit {
     pub rms: f64,
 }
 
-/// As many points as an ellipse has parameters.
+/// The fewest points: an ellipse has five parameters.
 const FEWEST: usize = 5;
 
-/// What is added to the scatter of the points, relatively, so that points exactly on an ellipse
-/// have one.
+/// The relative ridge added to the scatter of the points, so that points exactly on an ellipse have
+/// a solution.
 const RIDGE: f64 = 64.0 * f64::EPSILON;
 
-/// The ellipse of points: the direct fit under the constraint 4 a c - b² = 1 (Fitzgibbon, Pilu &
-/// Fisher 1999), split into quadratic and linear parts (Halíř & Flusser 1998), in coordinates about
-/// the mean of the points and of their size (Hartley 1997); then once more with each point weighed
-/// by the slope of the first fit there, so that distances count and not values (Sampson 1982; Haralick
-/// & Shapiro ch. 11). None for too few points and for those on a line.
+/// Fits an ellipse to points: the direct fit under the constraint 4 a c - b² = 1 (Fitzgibbon, Pilu
+/// & Fisher 1999), split into quadratic and linear parts (Halíř & Flusser 1998), in coordinates
+/// centred and scaled to the points (Hartley 1997). A second fit weights each point by the slope of
+/// the first fit there, so that it minimises distances and not values (Sampson 1982; Haralick &
+/// Shapiro ch. 11). None for too few points and for collinear ones.
 pub fn ellipse(points: &[[f64; 2]]) -> Option<EllipseFit> {
     if points.len() < FEWEST {
         return None;
@@ -51,7 +51,7 @@ pub fn ellipse(points: &[[f64; 2]]) -> Option<EllipseFit> {
     })
 }
 
-/// How far a point is from a conic, to first order (Sampson 1982).
+/// The distance of a point from a conic, to first order (Sampson 1982).
 pub fn distance_to_conic(conic: &[f64; 6], p: [f64; 2]) -> f64 {
     let [gx, gy] = slope(conic, p);
     let steep = (gx * gx + gy * gy).sqrt();
@@ -62,7 +62,7 @@ pub fn distance_to_conic(conic: &[f64; 6], p: [f64; 2]) -> f64 {
     }
 }
 
-/// The point of a conic next to a point near it, by a few steps down the slope.
+/// The foot of a nearby point on a conic, by a few gradient steps.
 pub fn foot_on_conic(conic: &[f64; 6], p: [f64; 2]) -> [f64; 2] {
     let mut foot = p;
     for _ in 0..3 {
@@ -89,7 +89,8 @@ pub(super) fn slope([a, b, c, d, e, _]: &[f64; 6], [x, y]: [f64; 2]) -> [f64; 2]
     [2.0 * a * x + b * y + d, b * x + 2.0 * c * y + e]
 }
 
-/// Coordinates about the mean of points, in which they are about one from it.
+/// Normalised coordinates: centred at the mean of points and scaled to a mean distance of about
+/// one.
 struct Frame {
     centre: [f64; 2],
     size: f64,
@@ -127,7 +128,7 @@ impl Frame {
     }
 }
 
-/// The weighed sums of x^i y^j: the fourth order, the third and so on, each by falling i.
+/// The weighted sums of x^i y^j: the fourth order, the third and so on, each by falling i.
 fn moments(points: impl Iterator<Item = ([f64; 2], f64)>) -> [f64; 15] {
     let mut sums = [0.0; 15];
     for ([x, y], weight) in points {
@@ -144,7 +145,7 @@ fn moments(points: impl Iterator<Item = ([f64; 2], f64)>) -> [f64; 15] {
     sums
 }
 
-/// The direct fit to weighed points.
+/// The direct fit to weighted points.
 fn direct(points: impl Iterator<Item = ([f64; 2], f64)>) -> Option<[f64; 6]> {
     let [
         x4,
@@ -249,7 +250,7 @@ mod tests {
         assert!(ellipse(&[[0.0, 1.0]; 9]).is_none());
         assert!(ellipse(&points(0.0, 0.0, 6.0)[..4]).is_none());
         assert!(ellipse(&[[f64::NAN; 2]; 9]).is_none());
-        // On a line: none, or one that is not told from it.
+        // On a line: none, or one that is indistinguishable from it.
         let line: Vec<[f64; 2]> = (0..20)
             .map(|i| [f64::from(i), 2.0 * f64::from(i)])
             .collect();

@@ -1,4 +1,4 @@
-//! The line of total least squares.
+//! Total least-squares fit of a line.
 
 /// A fitted line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,9 +11,9 @@ pub struct LineFit {
     pub rms: f64,
 }
 
-/// The line with the least sum of squares of distances across it: the main axis of the scatter of
-/// the points (Haralick & Shapiro ch. 11). None for fewer than two points, for points that coincide
-/// and for those that are no numbers.
+/// Fits the line with the least sum of squared perpendicular distances: the main axis of the
+/// scatter of the points (Haralick & Shapiro ch. 11). None for fewer than two points, for points
+/// that coincide and for those with NaN.
 pub fn line(points: &[[f64; 2]]) -> Option<LineFit> {
     let (first, last) = (points.first()?, points.last()?);
     let n = points.len() as f64;
@@ -42,13 +42,13 @@ pub fn line(points: &[[f64; 2]]) -> Option<LineFit> {
 }
 
 impl LineFit {
-    /// How far a point is from the line, in pixels.
+    /// The distance of a point from the line, in pixels.
     pub fn distance(&self, p: [f64; 2]) -> f64 {
         let [x, y] = [p[0] - self.centre[0], p[1] - self.centre[1]];
         (self.direction[0] * y - self.direction[1] * x).abs()
     }
 
-    /// The point of the line next to a point.
+    /// The foot of a point on the line.
     pub fn foot(&self, p: [f64; 2]) -> [f64; 2] {
         let [x, y] = [p[0] - self.centre[0], p[1] - self.centre[1]];
         let along = self.direction[0] * x + self.direction[1] * y;

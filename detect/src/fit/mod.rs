@@ -24,7 +24,7 @@ impl Fit {
         }
     }
 
-    /// How far a point is from the curve, in pixels.
+    /// The distance of a point from the curve, in pixels.
     pub fn distance(&self, p: [f64; 2]) -> f64 {
         match self {
             Self::Line(fit) => fit.distance(p),
@@ -32,7 +32,7 @@ impl Fit {
         }
     }
 
-    /// The point of the curve next to a point.
+    /// The foot of a point on the curve.
     pub fn foot(&self, p: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Line(fit) => fit.foot(p),
@@ -41,7 +41,7 @@ impl Fit {
     }
 }
 
-/// The ellipse of points, or where they have none, their line; none for fewer than two points.
+/// The ellipse fitted to points, or their line where there is none; none for fewer than two points.
 pub fn conic_or_line(points: &[[f64; 2]]) -> Option<Fit> {
     let conic = ellipse(points).map(Fit::Ellipse);
     conic.or_else(|| line(points).map(Fit::Line))

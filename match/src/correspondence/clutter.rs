@@ -1,35 +1,35 @@
-//! How likely it is by chance that a segment runs where a contour is expected.
+//! The probability that a segment of clutter runs along a predicted contour.
 //!
-//! About the part there are segments of many lengths, most of them of what is printed on things or lies
-//! about. One that is as long as so much of the contour falls on it, to within a few pixels and a small
-//! angle, as often as there are such segments in the area, times the part of the area and of all angles
-//! that this takes.
+//! Most segments around the part belong to prints on things or to other objects. The expected
+//! number of those of a given length that fall on a contour, within a few pixels and a small angle,
+//! is their density in the image times the share of the area and of all angles that this takes.
 
 use crate::correspondence::predicted_contours::PredictedContour;
 use crate::image::ImageFeatures;
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
-/// How far about the part, in its size in the picture and in pixels, clutter is counted.
+/// The margin around the part in which clutter is counted: relative to its size in the image, and
+/// in pixels.
 const ABOUT: f64 = 0.25;
 const MARGIN: f64 = 16.0;
-/// How far along a contour a segment may lie otherwise, in the contour's length, and in pixels.
+/// The range of positions along a contour: relative to the contour's length, and in pixels.
 const ALONG: f64 = 0.3;
 const END: f64 = 10.0;
-/// Nothing is more likely by chance.
+/// The greatest probability of a chance match.
 const MOST: f64 = 0.9;
 
-/// The segments about a part.
+/// The segments around a part in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clutter {
-    /// Their lengths in pixels, falling.
+    /// Their lengths in pixels, in falling order.
     lengths: Vec<f64>,
-    /// The area in pixels that they lie in.
+    /// The area that contains them, in square pixels.
     area: f64,
 }
 
 impl Clutter {
-    /// The segments about predicted arcs.
+    /// The segments around predicted arcs.
     pub fn about(picture: &ImageFeatures, arcs: &[PredictedContour]) -> Self {
         let size = picture.size.map(|n| n as f64);
         let (mut low, mut high): ([f64; 2], [f64; 2]) = (size, [0.0; 2]);
@@ -60,11 +60,12 @@ impl Clutter {
         }
     }
 
-    /// How likely a segment at least so long falls on a contour of a length, within a distance to
-    /// either side and an angle to either side, in pixels and radians.
-    pub fn chance(&self, length: f64, contour: f64, beside: f64, askew: f64) -> f64 {
+    /// The probability that a segment of at least a length falls by chance on a contour of a
+    /// length, within a distance to either side, in pixels, and an angle to either side, in
+    /// radians.
+    pub fn chance(&self, length: f64, contour: f64, distance: f64, angle: f64) -> f64 {
         let many = self.lengths.partition_point(|l| *l >= length) as f64 + 0.5;
-        let place = 2.0 * beside * (ALONG * contour + END);
-        (many / self.area * place * (2.0 * askew / PI)).min(MOST)
+        let place = 2.0 * distance * (ALONG * contour + END);
+        (many / self.area * place * (2.0 * angle / PI)).min(MOST)
     }
 }

@@ -1,24 +1,24 @@
-//! How likely predicted contours are detected, alone and given others.
+//! The detection probabilities of predicted contours, alone and given others.
 
 use super::predicted_contours::PredictedContour;
 use crate::part::detectability_prior::{DetectabilityPrior, MIN_RATE};
 
-/// How often an arc is found.
+/// The detection probabilities of an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates {
-    /// The arc that it depends on.
+    /// The arc that its detection depends on.
     pub parent: Option<usize>,
-    /// How likely it is found where that is missed, and where it is found.
+    /// The probabilities that it is found where the parent is missed, and where it is found.
     pub given: [f64; 2],
-    /// How likely it is found by itself.
+    /// The marginal probability that it is found.
     pub alone: f64,
 }
 
-/// So much of a broken edge is not found.
+/// The share of a broken edge that is not found.
 const GAPS: f64 = 0.3;
 
 impl DetectabilityPrior {
-    /// How likely a piece of an arc is found.
+    /// The probability that a piece of an arc is found.
     pub fn covered(&self, arc: &PredictedContour) -> f64 {
         let [_, broken, missed] = self.states(&arc.source)[usize::from(arc.outline)];
         (1.0 - missed - GAPS * broken).clamp(0.5, 1.0 - MIN_RATE)
@@ -29,7 +29,7 @@ impl DetectabilityPrior {
         (1.0 - missed).clamp(MIN_RATE, 1.0 - MIN_RATE)
     }
 
-    /// How often an arc of a view is found.
+    /// The detection probabilities of an arc of a view.
     pub fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
         let alone = self.alone(arc);
         let known = self.codetection.get(&arc.source);
@@ -60,7 +60,7 @@ impl DetectabilityPrior {
                 let parent = self.rates(&all[i], all).parent;
                 parent.is_none_or(|p| !left.contains(&p) || order.contains(&p))
             };
-            // A tree has no ring; what is none is taken as it comes.
+            // A tree has no cycle. Otherwise the arcs keep their order.
             let next = left.iter().position(ready).unwrap_or(0);
             order.push(left.remove(next));
         }

@@ -1,5 +1,5 @@
-//! How edges of a picture end in the vertices of a part: whether those that meet in one do so in the
-//! picture, too.
+//! How edges of the image end at the vertices of a part, and whether edges that share a vertex of
+//! the part end at a common point of the image.
 
 use super::problem::ProblemRelation;
 use crate::correspondence::FeatureChoice;
@@ -12,43 +12,46 @@ use premio_detect::SegmentShape;
 use premio_kernel::brep::topology::VertexId;
 use std::collections::BTreeMap;
 
-/// An edge ends in a vertex if it comes as near, in pixels, and goes on no farther.
+/// The greatest distance, in pixels, between the end of an edge and the vertex that it ends at. An
+/// edge that continues farther overruns the vertex.
 const VERTEX: f64 = 9.0;
-/// So far beyond it the picture must reach, to tell.
+/// The distance beyond a vertex, in pixels, that must lie in the image for an overrun to be
+/// detectable.
 const BEYOND: f64 = 12.0;
-/// How near, in pixels, an arc passes that an edge is explained by, and its least sine to the edge.
+/// An arc explains a continuing edge if it passes within this distance, in pixels, and crosses the
+/// edge with at most this sine.
 const PASSES: f64 = 5.0;
 const ACROSS: f64 = 0.28;
 
-/// What an edge does where its arc ends in a vertex.
+/// How an edge ends where its arc ends in a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum End {
-    /// It ends before it.
+    /// It ends before the vertex.
     Short,
-    /// It ends there, or goes on as another arc.
+    /// It ends at the vertex, or continues as another arc.
     There,
-    /// It goes on.
+    /// It overruns the vertex.
     Past,
 }
 
-/// A visible end of an arc.
+/// An end of an arc in the image.
 #[derive(Clone, Debug)]
 struct Tip {
     vertex: VertexId,
     /// Where the arc ends in the image.
     at: Point2<f64>,
-    /// Whether the picture reaches beyond it.
+    /// Whether the image extends beyond it.
     seen: bool,
-    /// By candidate: what it does there.
+    /// By candidate: how it ends there.
     ends: Vec<End>,
 }
 
-/// By feature, the ends of its arc, and what its candidates do there.
+/// By feature: the ends of its arc, and how its candidates end there.
 #[derive(Clone, Debug, Default)]
 pub struct Endpoints(Vec<Vec<Tip>>);
 
 impl Endpoints {
-    /// The ends of arcs in a picture; `order` determines which arc a feature is.
+    /// The ends of arcs in an image; `order` gives the arc of each feature.
     pub fn new(
         part: &SoughtPart<'_>,
         picture: &ImageFeatures,
@@ -61,7 +64,7 @@ impl Endpoints {
         Self(tips.collect())
     }
 
-    /// At how many of the vertices that are seen a feature's candidate ends, and goes on.
+    /// At how many visible vertices a feature's candidate ends, and how many it overruns.
     pub fn counts(&self, feature: usize, candidate: usize) -> [u32; 2] {
         let mut counts = [0; 2];
         for tip in self.0[feature].iter().filter(|tip| tip.seen) {
@@ -74,7 +77,7 @@ impl Endpoints {
         counts
     }
 
-    /// The relations of features whose arcs meet in a vertex that is seen: that their edges do.
+    /// The relations of features whose arcs share a visible vertex: their edges should end there.
     pub fn relations(
         &self,
         learned: &DetectabilityPrior,
@@ -87,7 +90,7 @@ impl Endpoints {
                 let mut tips = first
                     .iter()
                     .flat_map(|p| second.iter().map(move |q| (p, q)));
-                if let Some((p, q)) = tips.find(|(p, q)| p.meets(q)) {
+                if let Some((p, q)) = tips.find(|(p, q)| p.is_joined_to(q)) {
                     let [i, j] = [a, b].map(|k| &arcs[order[k]].source);
                     all.push(ProblemRelation {
                         members: [a, b],
@@ -101,29 +104,30 @@ impl Endpoints {
 }
 
 impl Tip {
-    /// Whether another is an end in the same vertex, at about the same place in the picture.
-    fn meets(&self, other: &Self) -> bool {
+    /// Whether another end lies at the same vertex and near it in the image.
+    fn is_joined_to(&self, other: &Self) -> bool {
         self.vertex == other.vertex && (self.at - other.at).norm() <= VERTEX
     }
 }
 
-/// By candidates, what it tells that both end in the vertex where their arcs do, and that not both do;
-/// junctions are kept so often where the part is, and by chance.
+/// By pair of candidates: the log-likelihood ratio that both end at the common vertex, or that not
+/// both do. `kept` is the probability that a junction is preserved where the part is, `chance` by
+/// clutter.
 fn scores(a: &Tip, b: &Tip, [kept, chance]: [f64; 2]) -> BTreeMap<(usize, usize), f64> {
-    let told = |both: bool| match both {
+    let ratio = |both: bool| match both {
         true => (kept / chance).ln(),
         false => ((1.0 - kept) / (1.0 - chance)).ln(),
     };
     let mut scores = BTreeMap::new();
     for (x, first) in a.ends.iter().enumerate() {
         for (y, second) in b.ends.iter().enumerate() {
-            scores.insert((x, y), told([first, second] == [&End::There; 2]));
+            scores.insert((x, y), ratio([first, second] == [&End::There; 2]));
         }
     }
     scores
 }
 
-/// The ends of an arc that are vertices in the picture, with what its candidates do there.
+/// The ends of an arc that are vertices in the image, with how its candidates end there.
 fn tips(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -152,8 +156,8 @@ fn tips(
     tips.collect()
 }
 
-/// Where the image of an arc ends that is nearest to a vertex, and the unit vector in which it leaves
-/// there; none where it is not near.
+/// The end of an arc's image at a vertex, and the unit vector that leaves the arc there; none where
+/// neither end is near the vertex.
 fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, Vector2<f64>)> {
     let last = arc.points.len().checked_sub(1)?;
     let distance = |k: usize| (arc.points[k].0 - vertex).norm();
@@ -163,7 +167,7 @@ fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, 
         (last, last.saturating_sub(1))
     };
     let step = (arc.points[end].0 - arc.points[next].0).norm();
-    // Half a step from the end to the vertex.
+    // The distance from the last sample to the vertex is half a step.
     if distance(end) > 2.0 * step || end == next {
         return None;
     }
@@ -171,7 +175,8 @@ fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, 
     Some((at, (at - before).try_normalize(0.0)?))
 }
 
-/// What an edge does at a vertex that it reaches so far beyond, where another arc explains it or not.
+/// How an edge ends that extends by `farthest` pixels beyond a vertex, where another arc explains
+/// the continuation or not.
 fn end(farthest: f64, explained: bool) -> End {
     match (farthest > VERTEX, farthest < -VERTEX) {
         (_, true) => End::Short,
@@ -180,7 +185,7 @@ fn end(farthest: f64, explained: bool) -> End {
     }
 }
 
-/// How far beyond a place a choice reaches along a direction.
+/// How far a candidate extends beyond a point along a direction, in pixels.
 fn farthest(
     choice: &FeatureChoice,
     picture: &ImageFeatures,
@@ -198,7 +203,7 @@ fn farthest(
     along.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Whether one of the arcs runs through a place about along a direction.
+/// Whether one of the arcs passes a point approximately along a direction.
 fn runs_along(arcs: &[PredictedContour], at: &Point2<f64>, direction: &Vector2<f64>) -> bool {
     let points = arcs.iter().flat_map(|a| &a.points);
     let mut seen = points.map(|p| &p.1);
@@ -210,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_edge_ends_in_a_vertex_within_nine_pixels_or_goes_on_as_another() {
+    fn an_edge_ends_at_a_vertex_within_nine_pixels_or_continues_as_another_arc() {
         assert_eq!(end(-9.5, false), End::Short);
         assert_eq!(end(f64::NEG_INFINITY, true), End::Short);
         assert_eq!(end(-8.5, false), End::There);

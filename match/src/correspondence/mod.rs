@@ -1,8 +1,8 @@
-//! The correspondences of predicted arcs and segments of a picture, as a problem of search.
+//! The correspondence problem: which segments of the image belong to which predicted contours.
 //!
-//! A segment can be an arc where it runs along it, a few pixels next to it at the most. Its attributes
-//! are how far next to, how much askew, and what share of the arc it covers; pieces that lie end to end
-//! are candidates together, as a broken edge.
+//! A segment is a candidate for a contour if it runs along it within a few pixels. Its attributes
+//! are the mean distance from the contour, the angle to it, and the share of the contour that it
+//! covers. Segments that lie end to end are also a joint candidate, as a broken edge.
 
 pub mod clutter;
 pub mod detectability;
@@ -22,65 +22,65 @@ use problem::{Candidate, Problem, ProblemFeature};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// How far next to an arc, in pixels, a segment may run.
+/// The greatest distance of a candidate segment from an arc, in pixels.
 const REACH: f64 = 6.0;
-/// The least cosine of the angle between an edge's normal and an arc's.
+/// The least cosine of the angle between the normals of an edge and of an arc.
 const COSINE: f64 = 0.96;
-/// The standard deviation of how far next to an arc its segment runs, in pixels.
+/// The standard deviation of a segment's distance from its arc, in pixels.
 pub const ADJACENT: f64 = 1.5;
-/// The standard deviation of an angle, in radians: at best, and of an end in pixels.
+/// The standard deviations of an angle at best, in radians, and of an end, in pixels.
 const ASKEW: f64 = 1.0 / 48.0;
 const END: f64 = 1.5;
-/// The angles that are possible, in radians, to either side.
+/// The range of possible angles to either side, in radians.
 const ANGLES: f64 = 0.28;
-/// The least share of an arc that a segment covers to be a candidate, and the fewest points.
+/// The least share of an arc that a candidate covers, and its fewest points.
 const SHARE: f64 = 0.12;
 const FEWEST: usize = 3;
-/// Pieces of one edge lie next to one another by no more than this, in pixels, and share no more of
-/// their length.
+/// The greatest difference between the distances from the arc of two pieces of one edge, in pixels.
 const PIECES: f64 = 1.6;
-/// They are no more askew than this, in standard deviations.
+/// The greatest angle of a piece to the arc, in standard deviations, and the greatest share of its
+/// length that overlaps other pieces.
 const PARALLEL: f64 = 3.0;
 const OVERLAP: f64 = 0.3;
-/// Shorter arcs than this, in pixels, are not looked for.
+/// Arcs shorter than this, in pixels, are not searched for.
 pub const SHORTEST: f64 = 10.0;
-/// From this share on an edge is whole, from that one down broken.
+/// The covered share from which an edge is whole; below, it is broken.
 pub const WHOLE: f64 = 0.85;
 
-/// What an arc can be, with the edge pixels that say so.
+/// A candidate for an arc, with its edge pixels.
 #[derive(Clone, Debug)]
 pub struct FeatureChoice {
     /// The segments.
     pub segments: Vec<u32>,
-    /// The covered share of the arc within the picture.
+    /// The covered share of the arc in the image.
     pub share: f64,
-    /// How far next to the arc, in pixels, along its normals.
+    /// The mean signed distance from the arc along its normals, in pixels.
     pub offset: f64,
-    /// By point of the arc: the edge, and the piece that it is of.
+    /// By point of the arc: the edge pixel, and the piece that contains it.
     pub hits: Vec<(usize, Point2<f64>, u32)>,
-    /// The length of its longest piece in pixels.
+    /// The length of its longest segment in pixels.
     pub longest: f64,
-    /// The logarithm of how likely an arc that is found is as whole as this.
+    /// The log-likelihood of this coverage for an arc that is found.
     pub likely: f64,
-    /// At how many of the arc's vertices that are seen it ends, and goes on.
+    /// At how many of the arc's visible vertices it ends, and how many it overruns.
     pub ends: [u32; 2],
 }
 
-/// A problem, with what its candidates are.
+/// An assignment problem with the meaning of its candidates.
 #[derive(Clone, Debug)]
 pub struct Correspondence {
-    /// The arcs that are looked for, by their numbers, in the order of the problem's features.
+    /// The indices of the arcs that are searched for, in the order of the problem's features.
     pub order: Vec<usize>,
-    /// By feature: its length in the picture, in pixels.
+    /// By feature: its length in the image, in pixels.
     pub lengths: Vec<f64>,
-    /// By feature and candidate: what it is.
+    /// By feature: its candidates.
     pub choices: Vec<Vec<FeatureChoice>>,
     /// The problem.
     pub problem: Problem,
 }
 
 impl Correspondence {
-    /// The correspondences between predicted arcs and a picture.
+    /// The correspondence problem of predicted arcs and an image.
     pub fn new(
         part: &SoughtPart<'_>,
         learned: &DetectabilityPrior,
@@ -88,8 +88,8 @@ impl Correspondence {
         arcs: &[PredictedContour],
     ) -> Self {
         let inside = |arc: &PredictedContour| {
-            let held = arc.points.iter().filter(|p| picture.edges.reaches(&p.1.at));
-            held.map(|p| p.1.length).sum::<f64>()
+            let visible = arc.points.iter().filter(|p| picture.edges.reaches(&p.1.at));
+            visible.map(|p| p.1.length).sum::<f64>()
         };
         let lengths: Vec<f64> = arcs.iter().map(inside).collect();
         let clutter = Clutter::about(picture, arcs);
@@ -115,14 +115,14 @@ impl Correspondence {
         let features = order.iter().zip(&choices).map(|(&i, choices)| {
             let rates = learned.rates(&arcs[i], arcs);
             let parent = rates.parent.and_then(|p| place.get(&p).copied());
-            // What the parent's state changes.
+            // The effect of the parent's state.
             let at_all = |given: [f64; 2]| match parent {
                 Some(_) => given,
                 None => [rates.alone; 2],
             };
             let given = at_all(rates.given);
             let missed = likelihood(lengths[i], 0.0, learned.covered(&arcs[i]));
-            let askew = ASKEW.hypot(END / lengths[i]);
+            let tilt_deviation = ASKEW.hypot(END / lengths[i]);
             ProblemFeature {
                 parent,
                 found: given.map(|p| (p / rates.alone).ln()),
@@ -130,7 +130,8 @@ impl Correspondence {
                 candidates: choices
                     .iter()
                     .map(|c| Candidate {
-                        score: c.likely + told(c, &arcs[i], lengths[i], askew, &clutter),
+                        score: c.likely
+                            + attributes(c, &arcs[i], lengths[i], tilt_deviation, &clutter),
                         pieces: c.pieces(),
                     })
                     .collect(),
@@ -148,7 +149,7 @@ impl Correspondence {
         }
     }
 
-    /// By feature: what an assignment draws the part to, the edges of its candidate.
+    /// By feature: the edge points of the assigned candidate, to which the pose is refined.
     pub fn pulls(
         &self,
         arcs: &[PredictedContour],
@@ -162,43 +163,44 @@ impl Correspondence {
     }
 }
 
-/// What it tells against a choice that it goes on past a vertex in which its arc ends: about the logarithm
-/// of how much rarer that is than by chance.
+/// The penalty of a candidate that overruns a vertex of its arc: about the logarithm of how much
+/// rarer this is for the arc's own edge than for clutter.
 const PAST: f64 = 2.0;
-/// So many pixels of a line are one observation more.
+/// The length of a line in pixels that counts as one more observation.
 const LONG: f64 = 24.0;
 
-/// The logarithm of a normal density times a range, in which clutter is anywhere alike.
+/// The logarithm of a normal density over the density of clutter, which is uniform over a range.
 fn against(x: f64, deviation: f64, range: f64) -> f64 {
     let u = x / deviation;
     (range / (deviation * TAU.sqrt())).ln() - 0.5 * u * u
 }
 
-/// How much less likely clutter covers as much of an arc, of so many pixels in the picture, and runs
-/// along it so, than an edge of its own, in logarithms.
-fn told(
+/// The log-likelihood ratio of a candidate against clutter, from its coverage of an arc with a
+/// length in pixels, its distance and its angle.
+fn attributes(
     choice: &FeatureChoice,
     arc: &PredictedContour,
     length: f64,
-    askew: f64,
+    tilt_deviation: f64,
     clutter: &Clutter,
 ) -> f64 {
     let covered = choice.share.min(1.0) * length;
-    // Pieces that lie end to end are rarer than the longest alone, and less rare than a whole one.
+    // Pieces that lie end to end are rarer than the longest alone and more frequent than a single
+    // segment of the covered length.
     let piece = choice.longest.min(covered);
     let chance = clutter.chance(0.5 * (piece + covered), length, REACH, ANGLES);
-    let told = -chance.ln()
+    let score = -chance.ln()
         + against(choice.offset, ADJACENT, 2.0 * REACH)
-        + against(tilt(choice, arc), askew, 2.0 * ANGLES);
-    told.max(-ATTRIBUTE) - PAST * f64::from(choice.ends[1])
+        + against(tilt(choice, arc), tilt_deviation, 2.0 * ANGLES);
+    score.max(-ATTRIBUTE) - PAST * f64::from(choice.ends[1])
 }
 
 impl FeatureChoice {
-    /// What it draws an arc to.
+    /// The edge points to which the arc is fitted.
     fn pulls(&self, arc: &PredictedContour) -> Vec<PointToLine> {
         let covered: f64 = self.hits.iter().map(|h| arc.points[h.0].1.length).sum();
-        // Edges next to each other are off alike: a line tells as much as its ends, and a little more
-        // if it is long.
+        // Neighbouring edge pixels have correlated errors. A line counts as two observations, for
+        // its ends, and more if it is long.
         let weight = (2.0 + covered / LONG) / self.hits.len() as f64;
         let hits = self.hits.iter().map(|&(k, target, _)| {
             let (point, seen) = arc.points[k];
@@ -212,7 +214,7 @@ impl FeatureChoice {
         hits.collect()
     }
 
-    /// The pieces that it takes most of: another arc may go on where this one ends.
+    /// The pieces of which it uses the greater part. Another arc may continue where this one ends.
     fn pieces(&self) -> Vec<u32> {
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
         for hit in &self.hits {
@@ -228,25 +230,26 @@ impl FeatureChoice {
     }
 }
 
-/// The logarithm of how likely an arc of so many pixels is covered to a share, where a piece of it is
-/// found so often.
+/// The log-likelihood that a share of an arc with a length in pixels is covered, where any piece of
+/// it is found with probability `found`.
 fn likelihood(length: f64, share: f64, found: f64) -> f64 {
     let share = share.clamp(0.0, 1.0);
-    // What is next to each other is found or missed together, and the more so the longer it is.
+    // Neighbouring pieces are found or missed together, so a long arc counts as few independent
+    // pieces.
     let pieces = ONE + MORE * length / (length + STRETCH);
     pieces * (share * found.ln() + (1.0 - share) * (1.0 - found).ln())
 }
 
-/// As many pieces of an arc are found each by itself, if it is short, and more, if it is long.
+/// The number of independent pieces of a short arc, and how many more a long one has.
 const ONE: f64 = 0.75;
 const MORE: f64 = 1.75;
-/// An arc of so many pixels has half of what it has more if it is long.
+/// The length in pixels at which an arc has half of these additional pieces.
 const STRETCH: f64 = 60.0;
 
-/// The most that an attribute tells against a candidate.
+/// The greatest penalty of a candidate's attributes.
 const ATTRIBUTE: f64 = 6.0;
 
-/// How much askew the edges of a choice run, in radians: the slope of their offsets.
+/// The angle of a candidate's edges to the arc, in radians: the slope of their distances along it.
 fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     let mut along = 0.0;
     let mut places = Vec::with_capacity(arc.points.len());
@@ -272,10 +275,10 @@ fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     if own > 0.0 { (both / own).atan() } else { 0.0 }
 }
 
-/// A point of an arc, the edge there, how far next to, and its piece.
+/// The index of a point of an arc, the edge pixel there, its signed distance, and its piece.
 type Run = (usize, Point2<f64>, f64, u32);
 
-/// What runs along an arc: single segments, and those that lie end to end.
+/// The candidates of an arc: single segments, and segments that lie end to end.
 fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice> {
     let mut by_segment: BTreeMap<u32, Vec<Run>> = BTreeMap::new();
     let mut inside = 0;
@@ -290,7 +293,7 @@ fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice
         {
             let at = seen.at + seen.normal * hit.offset;
             let all = by_segment.entry(hit.segment).or_default();
-            // One pixel a point.
+            // One pixel for each point.
             if all.last().is_none_or(|last| last.0 != k) {
                 all.push((k, at, hit.offset, hit.piece));
             }
@@ -328,15 +331,15 @@ fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice
     all
 }
 
-/// As many candidates as an arc can have.
+/// The most candidates of an arc.
 const MOST: usize = 12;
 
-/// Whether a piece runs as an arc does, so that it can be one of several that it is broken into.
+/// Whether a segment runs parallel to an arc, so that it can be a piece of its broken edge.
 fn is_along(piece: &FeatureChoice, arc: &PredictedContour) -> bool {
     tilt(piece, arc).abs() < PARALLEL * ASKEW.hypot(END / piece.longest)
 }
 
-/// A piece with those that lie end to end with it, the longest first.
+/// A segment joined with those that lie end to end with it, the longest first.
 fn joined(arc: &PredictedContour, seed: &FeatureChoice, pieces: &[FeatureChoice]) -> FeatureChoice {
     let mut whole = seed.clone();
     let mut order: Vec<&FeatureChoice> = pieces.iter().collect();

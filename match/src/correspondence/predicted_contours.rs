@@ -1,4 +1,4 @@
-//! What is predicted of a part at a pose: the visible contours, as points of the picture.
+//! The visible contours of a part that are predicted at a pose, as points of the image.
 
 use crate::camera::Pinhole;
 use crate::hypothesis::edge_score::{SampleHit, seen};
@@ -9,10 +9,10 @@ use premio_visibility::contours::Contour;
 use premio_visibility::contours::{ViewError, contours};
 use std::collections::BTreeMap;
 
-/// The distance of points along a contour, in pixels, and how many there are at most.
+/// The spacing of points along a contour, in pixels, and their greatest number.
 pub const APART: f64 = 3.0;
 const MOST: usize = 400;
-/// How many points tell the length of a piece.
+/// How many points estimate the length of a piece.
 const FEW: usize = 12;
 
 /// A visible contour of a part.
@@ -20,7 +20,7 @@ const FEW: usize = 12;
 pub struct PredictedContour {
     /// What it is the image of.
     pub source: ArcSource,
-    /// The stroke of the part, if it is an edge.
+    /// The index of its edge in [`SoughtPart::strokes`]; none for a limb.
     pub stroke: Option<usize>,
     /// Whether only one of its faces is turned to the eye.
     pub outline: bool,
@@ -30,7 +30,7 @@ pub struct PredictedContour {
     pub length: f64,
 }
 
-/// The visible contours of a part at a pose, in a picture of so many pixels.
+/// The visible contours of a part at a pose, in an image with a width and height in pixels.
 pub fn arcs(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
@@ -60,7 +60,7 @@ pub fn arcs(
             }
         };
         if contour.smooth {
-            // The normal does not jump along it: it is not seen.
+            // The normal is continuous across a smooth edge, so it is not visible.
             continue;
         }
         let points = points(contour, camera, pose);

@@ -1,16 +1,16 @@
-//! What is to be assigned.
+//! The assignment problem.
 
 use std::collections::BTreeMap;
 
-/// By feature: the candidate that it is, or none if it is missed.
+/// By feature: the assigned candidate, or none if it is missed.
 pub type Assignment = Vec<Option<usize>>;
 
-/// Something of the picture that a feature can be.
+/// A candidate of a feature in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The logarithm of how much more likely its attributes are as the feature's than as clutter.
+    /// The log-likelihood ratio of its attributes as the feature's against clutter.
     pub score: f64,
-    /// The pieces of edges that it is made of: each can be of one feature only.
+    /// The pieces of edges that it uses. A piece can belong to one feature only.
     pub pieces: Vec<u32>,
 }
 
@@ -19,11 +19,11 @@ pub struct Candidate {
 pub struct ProblemFeature {
     /// The feature that its detection depends on; it comes before.
     pub parent: Option<usize>,
-    /// The logarithms of how likely it is found, where the parent is missed, and where it is found.
+    /// The log-probabilities that it is found, where the parent is missed and where it is found.
     pub found: [f64; 2],
-    /// The same of how likely it is missed.
+    /// The log-probabilities that it is missed, in the same cases.
     pub missed: [f64; 2],
-    /// What it can be.
+    /// Its candidates.
     pub candidates: Vec<Candidate>,
 }
 
@@ -32,11 +32,12 @@ pub struct ProblemFeature {
 pub struct ProblemRelation {
     /// The features; the first comes before the second.
     pub members: [usize; 2],
-    /// By pair of their candidates, in order, what it adds; nothing for pairs that are not listed.
+    /// By pair of their candidates, in order: its score; zero for pairs that are not listed.
     pub scores: BTreeMap<(usize, usize), f64>,
 }
 
-/// The features of a part at a pose, in the order in which they are assigned, and what they can be.
+/// The features of a part at a pose, in the order in which they are assigned, with their
+/// candidates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Problem {
     /// The features.
@@ -46,7 +47,7 @@ pub struct Problem {
 }
 
 impl ProblemFeature {
-    /// What it adds as a candidate, or missed, where its parent is missed or found.
+    /// Its score as a candidate or missed, where its parent is missed or found.
     pub fn score(&self, choice: Option<usize>, parent: bool) -> f64 {
         let parent = usize::from(parent);
         match choice {
@@ -57,14 +58,14 @@ impl ProblemFeature {
 }
 
 impl ProblemRelation {
-    /// What it adds for two candidates.
+    /// Its score for two candidates.
     pub fn score(&self, pair: (usize, usize)) -> f64 {
         self.scores.get(&pair).copied().unwrap_or_default()
     }
 }
 
 impl Problem {
-    /// The score of an assignment; it may use a piece twice, which no search does.
+    /// The score of an assignment. It does not check that no piece is used twice.
     pub fn score(&self, assignment: &[Option<usize>]) -> f64 {
         let own = self.features.iter().zip(assignment).map(|(f, choice)| {
             let parent = f.parent.is_some_and(|p| assignment[p].is_some());

@@ -1,28 +1,29 @@
-//! What a picture tells for and against a pose.
+//! The edge score of a pose: a log-likelihood ratio from the edges near projected samples.
 
 use crate::camera::Pinhole;
 use crate::image::{ImageFeatures, Reach, bin};
 use crate::part::{EdgeSample, PartView, SampledEdge, SoughtPart};
 use nalgebra::{Isometry3, Point2, Point3, Vector2};
 
-/// So many pixels of a contour are one observation: next to each other they are alike.
+/// The contour length in pixels that counts as one observation: neighbouring edge pixels are
+/// correlated.
 const OBSERVATION: f64 = 10.0;
-/// How likely a limb is whole, broken and missed.
+/// The probabilities that a limb is whole, broken and missed.
 const LIMB: [f64; 3] = [0.6, 0.25, 0.15];
 
-/// Where a mark is in a picture.
+/// The projection of an edge sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleHit {
-    /// The image.
+    /// The image point.
     pub at: Point2<f64>,
     /// The unit normal of the contour there.
     pub normal: Vector2<f64>,
-    /// The length in pixels that the mark stands for.
+    /// The image length that the sample represents, in pixels.
     pub length: f64,
 }
 
 impl SampleHit {
-    /// Whether another is of the same edge in the image.
+    /// Whether another sample coincides with it in the image.
     fn is(&self, other: &Self) -> bool {
         let d = other.at - self.at;
         let off = self.normal.dot(&d).abs();
@@ -32,10 +33,10 @@ impl SampleHit {
     }
 }
 
-/// Nearer than this, in pixels, two contours make one edge.
+/// Contours nearer to each other than this, in pixels, form one edge in the image.
 const ONE: f64 = 4.0;
 
-/// Where the image of a mark is.
+/// Projects an edge sample; none if it lies behind the camera.
 pub fn seen(camera: &Pinhole, pose: &Isometry3<f64>, mark: &EdgeSample) -> Option<SampleHit> {
     let p = pose * mark.point;
     if p.z <= 0.0 {
@@ -43,7 +44,7 @@ pub fn seen(camera: &Pinhole, pose: &Isometry3<f64>, mark: &EdgeSample) -> Optio
     }
     let at = camera.project(&p);
     let d = pose.rotation * mark.tangent;
-    // The image's move along the tangent.
+    // The derivative of the image point along the tangent.
     let (x, y) = (d.x - d.z * p.x / p.z, d.y - d.z * p.y / p.z);
     let along = Vector2::new(camera.focal[0] * x + camera.skew * y, camera.focal[1] * y) / p.z;
     let speed = along.norm();
@@ -59,25 +60,24 @@ pub fn eye(pose: &Isometry3<f64>) -> Point3<f64> {
     pose.inverse_transform_point(&Point3::origin())
 }
 
-/// What a picture tells of a pose.
+/// The edge score of a pose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EdgeScore {
-    /// The logarithm of how much more likely the picture's edges are where the part is so than where
-    /// all is clutter.
+    /// The log-likelihood ratio of the image's edges with the part at the pose against clutter.
     pub ratio: f64,
-    /// The length of the visible contours in the picture, in pixels, and of that the length with an
-    /// edge near.
+    /// The length of the visible contours in the image, in pixels, and the part of it that has an
+    /// edge within the tolerance.
     pub visible: f64,
     /// See `visible`.
     pub covered: f64,
-    /// The length of the visible contours out of the picture.
+    /// The length of the visible contours outside the image.
     pub outside: f64,
-    /// By stroke, limbs after edges: the visible length in the picture, and the covered one.
+    /// By edge, then by limb: the visible length in the image, and the covered one.
     pub strokes: Vec<[f64; 2]>,
 }
 
 impl EdgeScore {
-    /// The covered part of what is visible in the picture.
+    /// The covered share of what is visible in the image.
     pub fn share(&self) -> f64 {
         if self.visible > 0.0 {
             self.covered / self.visible
@@ -86,15 +86,15 @@ impl EdgeScore {
         }
     }
 
-    /// The part of the visible contours that lies in the picture.
+    /// The share of the visible contours that lies in the image.
     pub fn inside(&self) -> f64 {
         let all = self.visible + self.outside;
         if all > 0.0 { self.visible / all } else { 0.0 }
     }
 }
 
-/// The marks that are visible from an eye: those that no other part of the part hides, as far as a
-/// view tells, and limbs.
+/// The samples that are visible from an eye: those of edges that a cached view does not show as
+/// hidden, and those of limbs.
 pub fn visible<'a>(
     part: &'a SoughtPart<'_>,
     view: &'a PartView,
@@ -105,21 +105,22 @@ pub fn visible<'a>(
     edges.map(|(mark, _)| mark).chain(&view.limbs)
 }
 
-/// What a stroke tells of which so many pixels are visible, of which a share has an edge near; `states`
-/// is how likely it is whole, broken and missed.
-fn told(length: f64, share: f64, states: &[f64; 3]) -> f64 {
+/// The log-likelihood ratio of an edge with a visible length in pixels and a covered share;
+/// `states` are the probabilities that it is whole, broken and missed.
+fn edge_likelihood(length: f64, share: f64, states: &[f64; 3]) -> f64 {
     let weight = (length / STROKE).sqrt().min(HEAVIEST);
     let [whole, broken, missed] = [0, 1, 2].map(|k| (states[k] / CLUTTER[k]).ln());
     let between = |from: f64, to: f64, t: f64| from + (to - from) * t.clamp(0.0, 1.0);
     let middle = 0.5 * (WHOLE + MISSED);
-    let told = match share < middle {
+    let likelihood = match share < middle {
         true => between(missed, broken, (share - MISSED) / (middle - MISSED)),
         false => between(broken, whole, (share - middle) / (WHOLE - middle)),
     };
-    weight * told
+    weight * likelihood
 }
 
-/// What the ends of a stroke tell: edges of a part end in its vertices, others go on as they like.
+/// The log-likelihood ratio of the ends of an edge: edges of a part end in its vertices, those of
+/// clutter continue past them.
 fn ends(
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -127,7 +128,7 @@ fn ends(
     stroke: &SampledEdge,
 ) -> f64 {
     let Some(ends) = &stroke.ends else { return 0.0 };
-    let told = ends.iter().map(|(point, outwards)| {
+    let likelihoods = ends.iter().map(|(point, outwards)| {
         let p = pose * point;
         let ahead = pose * (point + outwards * (stroke.length / 64.0));
         if p.z <= 0.0 || ahead.z <= 0.0 {
@@ -141,7 +142,7 @@ fn ends(
         let mut on = 0;
         for step in BEYOND {
             match picture.edges.contains(&(at + way * step), bin, Reach::Fine) {
-                Some(holds) => on += usize::from(holds),
+                Some(is_edge) => on += usize::from(is_edge),
                 None => return 0.0,
             }
         }
@@ -150,26 +151,27 @@ fn ends(
             false => ((1.0 - GOES_ON[0]) / (1.0 - GOES_ON[1])).ln(),
         }
     });
-    told.sum()
+    likelihoods.sum()
 }
 
-/// Where beyond the end of a stroke an edge goes on, in pixels.
+/// The distances beyond the end of an edge at which its continuation is tested, in pixels.
 const BEYOND: [f64; 3] = [6.0, 9.0, 12.0];
-/// How likely it goes on where the part is, and where its place is found by chance.
+/// The probabilities that an edge continues past a vertex of the part, and past a chance position.
 const GOES_ON: [f64; 2] = [0.1, 0.4];
 
-/// A stroke of so many pixels is one observation; of more it is more, by the root.
+/// The length in pixels at which an edge counts as one observation. The count grows with the square
+/// root of the length.
 const STROKE: f64 = 40.0;
-/// As many observations as a stroke can be at most.
+/// The most observations that an edge counts as.
 const HEAVIEST: f64 = 3.0;
-/// How likely what lies about by chance looks like a whole edge, a broken one, or none: what is near
-/// a line by chance is a line as well, and pictures of things are full of them.
+/// The probabilities that clutter looks like a whole edge, a broken one and none. An edge that is
+/// near a line by chance is often itself a line, and images of things are full of lines.
 const CLUTTER: [f64; 3] = [0.08, 0.22, 0.7];
-/// From this share on an edge is whole, up to that one missed.
+/// An edge is whole from the first covered share on, and missed up to the second.
 const WHOLE: f64 = 0.85;
 const MISSED: f64 = 0.3;
 
-/// How well an edge fits that is within two pixels of a mark: one where it is on it.
+/// How well the edge near a sample fits it, from 0 to 1: 1 within `OFF` of the contour.
 fn nearness(picture: &ImageFeatures, seen: &SampleHit) -> f64 {
     let hit = picture.edges.along(&seen.at, &seen.normal, 3.0, COSINE);
     hit.map_or(0.0, |hit| {
@@ -178,19 +180,21 @@ fn nearness(picture: &ImageFeatures, seen: &SampleHit) -> f64 {
     })
 }
 
-/// The least cosine between the normal of an edge and that of the contour it is of.
+/// The least cosine between the normal of an edge and that of its contour.
 pub const COSINE: f64 = 0.98;
-/// How far an edge may be off its contour, in pixels, before it counts less.
+/// The residual, in pixels, above which an edge counts less.
 const OFF: f64 = 1.0;
 
-/// So many marks are asked at a glance, where there are many more; fewer in the picture tell nothing.
+/// The number of samples that a first test evaluates, of parts with many more, and the fewest
+/// samples in the image for the test to apply.
 const GLANCE: usize = 64;
 const FEWEST: usize = 8;
-/// At a pose that is about right a greater share of the marks that face the eye has edges near.
+/// The share of the samples facing the eye that have an edge nearby at an approximately correct
+/// pose is greater than this.
 const AT_LEAST: f64 = 0.2;
 
-/// Whether so few of some marks have an edge near that a pose is not worth a closer look. What the part
-/// hides of itself is not asked yet.
+/// Whether so few of a subset of samples have an edge nearby that a pose needs no closer
+/// evaluation. Occlusion by the part itself is not evaluated yet.
 pub fn is_unlikely(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -202,17 +206,18 @@ pub fn is_unlikely(
         return false;
     }
     let eye = eye(pose);
-    let (mut asked, mut found) = (0, 0);
+    let (mut evaluated, mut found) = (0, 0);
     for mark in part.marks.iter().step_by(stride).filter(|m| m.faces(&eye)) {
         let seen = seen(camera, pose, mark);
         let near = seen.and_then(|seen| near(picture, &seen, Reach::Coarse));
-        asked += usize::from(near.is_some());
+        evaluated += usize::from(near.is_some());
         found += usize::from(near.is_some_and(|near| near > 0.0));
     }
-    asked >= FEWEST && (found as f64) < AT_LEAST * asked as f64
+    evaluated >= FEWEST && (found as f64) < AT_LEAST * evaluated as f64
 }
 
-/// What a picture tells of a pose. At a first look, of a coarse reach, the view is a glimpse.
+/// The edge score of a pose. With the coarse tolerance it evaluates a subset of samples and `view`
+/// is a subsampled view.
 pub fn evidence(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -234,7 +239,7 @@ pub fn evidence(
             continue;
         };
         if reach == Reach::Fine {
-            // Contours that fall on one another are seen once.
+            // Contours that coincide in the image count once.
             let one =
                 |(stroke, other): &(usize, SampleHit)| *stroke != mark.stroke && other.is(&seen);
             if claimed.iter().any(one) {
@@ -255,7 +260,7 @@ pub fn evidence(
 }
 
 impl EdgeScore {
-    /// Adds a mark in the picture, and how well an edge is near it.
+    /// Adds a sample in the image with how well the edge near it fits.
     fn add(&mut self, stroke: usize, length: f64, near: f64) {
         if stroke >= self.strokes.len() {
             self.strokes.resize(stroke + 1, [0.0; 2]);
@@ -264,7 +269,8 @@ impl EdgeScore {
         self.strokes[stroke][1] += near * length;
     }
 
-    /// Makes of what one mark in so many adds what all would, and of strokes what they tell.
+    /// Scales the lengths from one sample in `stride` to all samples, and adds the log-likelihood
+    /// ratios of edges.
     fn weigh(&mut self, part: &SoughtPart<'_>, eye: &Point3<f64>, stride: f64) {
         self.outside *= stride;
         for (i, &[length, covered]) in self.strokes.iter().enumerate() {
@@ -273,7 +279,7 @@ impl EdgeScore {
                     let middle = &part.marks[(s.marks.start + s.marks.end) / 2];
                     &s.states[usize::from(middle.is_outline(eye))]
                 });
-                self.ratio += told(length * stride, covered / length, states);
+                self.ratio += edge_likelihood(length * stride, covered / length, states);
                 self.visible += length * stride;
                 self.covered += covered * stride;
             }
@@ -281,17 +287,18 @@ impl EdgeScore {
     }
 }
 
-/// How well an edge is near a mark, from nothing to one; none where the mark is not in the picture.
+/// How well an edge near a sample fits, from 0 to 1; none where the sample is outside the image.
 fn near(picture: &ImageFeatures, seen: &SampleHit, reach: Reach) -> Option<f64> {
-    let holds = picture.edges.contains(&seen.at, bin(&seen.normal), reach)?;
-    Some(match (holds, reach) {
+    let has_edge = picture.edges.contains(&seen.at, bin(&seen.normal), reach)?;
+    Some(match (has_edge, reach) {
         (true, Reach::Fine) => nearness(picture, seen),
         (true, Reach::Coarse) => 1.0,
         (false, _) => 0.0,
     })
 }
 
-/// What the ends of the strokes tell that are found: only of these it can be seen that they go on.
+/// The log-likelihood ratio of the ends of the edges that are found: only these can be seen to
+/// continue.
 fn all_ends(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,

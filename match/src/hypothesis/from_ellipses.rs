@@ -1,4 +1,4 @@
-//! Poses that ellipses of a picture propose: taken for circular edges of the part.
+//! Pose hypotheses from ellipses of the image that are matched to circular edges of the part.
 
 use crate::camera::Pinhole;
 use crate::hypothesis::edge_score::eye;
@@ -11,20 +11,20 @@ use premio_detect::SegmentShape;
 use premio_kernel::geometry::curve::Curve;
 use rayon::prelude::*;
 
-/// An arc of an ellipse with fewer edge pixels tells no circle.
+/// The fewest edge pixels of an arc that determine a circle.
 const SHORTEST: u32 = 40;
-/// How many turns about a circle's axis are tried where the part tells them apart.
+/// How many rotations about a circle's axis are tried where the part is not a part of revolution.
 const TURNS: usize = 24;
-/// As many ellipses are taken, the longest first: of a part with many circles fewer, so that there are about
-/// so many poses, but no fewer than this.
+/// The most ellipses that are used, the longest first. A part with many circles uses fewer, so that
+/// at most about `POSES` poses are tested, but at least `FEWEST`.
 const MOST: usize = 64;
 const POSES: usize = 150_000;
 const FEWEST: usize = 8;
 
-/// The poses that the ellipses of a picture propose.
+/// The poses that the ellipses of an image propose.
 pub fn of_ellipses(part: &SoughtPart<'_>, picture: &ImageFeatures, camera: &Pinhole) -> Proposed {
     let turns = if part.axis.is_some() { 1 } else { TURNS };
-    // Two circles are seen as an ellipse, and each can be an edge's in either sense.
+    // Two circles have the same ellipse as their image, and each has two possible normals.
     let each = (4 * part.circles.len() * turns).max(1);
     let mut conics = conics(picture);
     let most = (POSES / each).clamp(FEWEST, MOST);
@@ -85,7 +85,7 @@ fn of_ellipse(
     (all, count)
 }
 
-/// Whether any of a stroke can be seen from an eye.
+/// Whether any sample of an edge faces an eye.
 fn faces(part: &SoughtPart<'_>, stroke: &SampledEdge, eye: &Point3<f64>) -> bool {
     let mut marks = part.marks[stroke.marks.clone()].iter();
     marks.any(|mark| mark.faces(eye))

@@ -1,4 +1,5 @@
-//! Poses that a picture proposes: chains of its lines taken for chains of edges.
+//! Pose hypotheses: chains of the image's lines matched to chains of the part's edges, and ellipses
+//! to circular edges.
 
 pub mod edge_score;
 pub mod from_ellipses;
@@ -13,38 +14,39 @@ use crate::pose::refine::{PointToLine, refine};
 use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rayon::prelude::*;
 
-/// A pose with what is told of it.
+/// A pose with its edge score.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
     /// The pose.
     pub pose: Isometry3<f64>,
-    /// The logarithm of how much more likely the picture is with it than without.
+    /// The log-likelihood ratio of the image with it against clutter.
     pub ratio: f64,
-    /// The number of the picture's chain.
+    /// The index of the image's chain.
     pub chain: usize,
-    /// The number of the part's chain.
+    /// The index of the part's chain.
     pub of: usize,
 }
 
-/// How many are kept from step to step.
+/// How many hypotheses are kept.
 const KEPT: usize = 1000;
-/// So many are kept though the picture tells against them, as long as it does so by no more than this: of a
-/// part half of whose edges are as dark as what is behind them, all poses are unlikely at a first look.
+/// How many are kept though their log-likelihood ratio is negative, as long as it exceeds
+/// `MIN_RATE`. If half of a part's edges are as dark as their background, the first score of every
+/// pose is negative.
 const UNLIKELY: usize = 100;
 const MIN_RATE: f64 = -40.0;
 
-/// Poses that are proposed.
+/// The proposed poses.
 #[derive(Clone, Debug)]
 pub struct Proposed {
-    /// Those that are plausible.
+    /// The plausible ones.
     pub hypotheses: Vec<Hypothesis>,
-    /// How many there were.
+    /// How many poses were tested.
     pub count: usize,
-    /// Whether some were left out because there were too many.
+    /// Whether ellipses were left out because there were too many.
     pub cut: bool,
 }
 
-/// The poses that chains and ellipses of a picture propose, the most likely first.
+/// The poses that chains and ellipses of an image propose, the most likely first.
 pub fn hypotheses(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -71,7 +73,7 @@ pub fn hypotheses(
     }
 }
 
-/// Sorts them by falling likelihood; equal ones as they came.
+/// Sorts by falling likelihood; equal ones by their chains.
 pub fn best_first(all: &mut [Hypothesis]) {
     all.sort_by(|a, b| {
         let order = b.ratio.total_cmp(&a.ratio);
@@ -79,7 +81,7 @@ pub fn best_first(all: &mut [Hypothesis]) {
     });
 }
 
-/// The hypotheses that are not like a more likely one, at most so many.
+/// The hypotheses whose poses differ from all more likely ones, at most `most`.
 pub fn distinct(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
@@ -101,7 +103,7 @@ pub fn distinct(
     kept
 }
 
-/// The images of a part's probes at a pose, and at those that its symmetries make of it.
+/// The images of a part's probe points at a pose and at its symmetric poses.
 fn all_images(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
@@ -112,7 +114,7 @@ fn all_images(
     part.turns().map(image).collect()
 }
 
-/// Whether probes are where one of the images has them.
+/// Whether the probe points coincide with those of one of the images.
 fn is_one_of(images: &[[Point2<f64>; 4]], known: &[Point2<f64>; 4]) -> bool {
     let size = (known[1] - known[0])
         .norm()
@@ -122,7 +124,7 @@ fn is_one_of(images: &[[Point2<f64>; 4]], known: &[Point2<f64>; 4]) -> bool {
     images.iter().any(is)
 }
 
-/// Whether two poses are one, but for the part's symmetries.
+/// Whether two poses are equal up to the part's symmetries.
 pub fn is_same(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
@@ -133,9 +135,10 @@ pub fn is_same(
     is_one_of(&all_images(part, camera, pose), &images[0])
 }
 
-/// So much of the visible contours must lie in the picture.
+/// The least share of the visible contours that lies in the image.
 pub const INSIDE: f64 = 0.3;
-/// Poses that put four points within this part of the part's size are one.
+/// Poses are equal if their probe points differ by at most this share of the part's size in the
+/// image.
 const SAME: f64 = 0.04;
 
 fn of_chain(
@@ -165,7 +168,7 @@ fn of_chain(
     (all, count)
 }
 
-/// A pose that a chain of the picture and one of the part propose, if it is not unlikely at a first look.
+/// A pose that a chain of the image and one of the part propose, if its coarse score is plausible.
 pub fn plausible(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -177,16 +180,16 @@ pub fn plausible(
         return None;
     }
     let view = part.glimpse(&eye(&pose));
-    let told = evidence(part, picture, camera, &pose, view, Reach::Coarse);
-    (told.inside() > INSIDE && told.ratio > MIN_RATE).then_some(Hypothesis {
+    let score = evidence(part, picture, camera, &pose, view, Reach::Coarse);
+    (score.inside() > INSIDE && score.ratio > MIN_RATE).then_some(Hypothesis {
         pose,
-        ratio: told.ratio,
+        ratio: score.ratio,
         chain,
         of,
     })
 }
 
-/// Whether the edges of a chain can be seen in a pose, and are as long as their lines at least.
+/// Whether the edges of a chain face the camera at a pose and are at least as long as their lines.
 fn fits(
     part: &SoughtPart<'_>,
     model: &part::EdgePath,
@@ -217,12 +220,13 @@ fn fits(
         }
         let corner = &chain.corners[i];
         let reach = corner.away.dot(&(camera.project(&far) - corner.at));
-        // The line may run on into another, but not by much.
+        // The line may continue into another one by a little.
         reach > 0.8 * corner.length.min(2.0 * reach.abs()) && reach > 0.6 * corner.length
     })
 }
 
-/// The pose that edges near it draw it to, with the likelihood there.
+/// The pose after refinement to nearby edges, with its score; `reaches` are the search radii in
+/// pixels, round by round.
 pub fn drawn(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -231,7 +235,7 @@ pub fn drawn(
     reaches: &[f64],
 ) -> Option<Hypothesis> {
     let mut pose = start.pose;
-    // So many edges tell a pose well enough that more come only at the last.
+    // This many samples determine a pose well enough. The last round uses all.
     let stride = 1 + part.marks.len() / MANY;
     for (k, &reach) in reaches.iter().enumerate() {
         let view = part.view(&eye(&pose));
@@ -243,18 +247,18 @@ pub fn drawn(
         pose = refine(camera, &pose, &pulls, reach, 6)?.pose;
     }
     let view = part.view(&eye(&pose));
-    let told = evidence(part, picture, camera, &pose, view, Reach::Fine);
-    (told.inside() > INSIDE).then_some(Hypothesis {
+    let score = evidence(part, picture, camera, &pose, view, Reach::Fine);
+    (score.inside() > INSIDE).then_some(Hypothesis {
         pose,
-        ratio: told.ratio,
+        ratio: score.ratio,
         ..*start
     })
 }
 
-/// The most likely pose that is reached from about one.
+/// The most likely pose found from perturbed starts around one.
 ///
-/// Edges that lie side by side draw to wrong places: what is turned and moved a little may be drawn to
-/// better ones.
+/// Edges that lie side by side attract samples to wrong positions. A start that is rotated or
+/// translated a little may converge to a better pose.
 pub fn settled(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
@@ -269,7 +273,7 @@ pub fn settled(
                 let mut axis = Vector3::zeros();
                 axis[k % 3] = sign * size;
                 let pose = if k < 3 {
-                    // About the part's middle.
+                    // About the part's centre.
                     let turn = UnitQuaternion::from_scaled_axis(axis);
                     let turn = Isometry3::rotation_wrt_point(turn, middle);
                     turn * best.pose
@@ -291,13 +295,13 @@ pub fn settled(
     best
 }
 
-/// How far, in pixels, marks are drawn to edges, round by round.
+/// The search radii for edges around samples, in pixels, round by round.
 pub const REACHES: [f64; 5] = [12.0, 8.0, 5.0, 3.0, 2.0];
 
-/// Of more marks only some are drawn to edges at first.
+/// The approximate number of samples that the first rounds use.
 const MANY: usize = 300;
 
-/// The edges that the marks of a part, or one in so many, are drawn to.
+/// The edges near the samples of a part, or near every `stride`-th of them.
 fn pulls(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,

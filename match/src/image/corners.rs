@@ -1,9 +1,10 @@
-//! Chains of lines: three lines, the middle one of which meets the others at its two ends.
+//! Chains of lines: three lines, the middle one of which forms a corner with another at each end.
 
 use super::lines::ImageLine;
 use nalgebra::{Point2, Vector2};
 
-/// How far, in pixels, a line may end before the corner, and how much of its own length besides.
+/// The greatest gap between the end of a line and a corner: in pixels, plus a share of the line's
+/// length.
 const SHORT: f64 = 8.0;
 const PART: f64 = 0.25;
 /// The least sine of the angle of a corner.
@@ -12,18 +13,18 @@ const SHARP: f64 = 0.17;
 const MIDDLE: f64 = 16.0;
 const LIMB: f64 = 10.0;
 
-/// Where a line meets another at one of its ends.
+/// A corner of a line with another at one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineCorner {
-    /// Where.
+    /// The point.
     pub at: Point2<f64>,
     /// The other line.
     pub line: u32,
     /// The unit vector in which the other leaves the corner.
     pub away: Vector2<f64>,
-    /// How far the lines end before the corner, or run beyond it, in pixels.
+    /// How far the lines end before the corner or overrun it, in pixels.
     pub gap: f64,
-    /// The length of the other line from the corner on.
+    /// The length of the other line from the corner.
     pub length: f64,
 }
 
@@ -34,7 +35,7 @@ pub struct LinePath {
     pub middle: Vec<u32>,
     /// The corners, with the lines that leave them.
     pub corners: [LineCorner; 2],
-    /// What is known of it: the length of its lines less what is missing, in pixels.
+    /// Its score: the length of its lines less a penalty for gaps, in pixels.
     pub worth: f64,
 }
 
@@ -56,11 +57,11 @@ impl LinePath {
     }
 }
 
-/// How much of a line makes up for what is missing.
+/// The length of a line that balances a unit of gap.
 const MISSING: f64 = 4.0;
 
-/// The chains of lines, the most worthy first: at most so many with one line between the corners, and
-/// as many with two.
+/// The chains of lines, the best first: at most `most` with one line between the corners, and as
+/// many with two.
 pub fn chains(lines: &[ImageLine], most: usize) -> [Vec<LinePath>; 2] {
     let long = lines.iter().take_while(|l| l.length >= MIDDLE);
     let all: Vec<[Vec<LineCorner>; 2]> = long
@@ -101,8 +102,7 @@ pub fn chains(lines: &[ImageLine], most: usize) -> [Vec<LinePath>; 2] {
     found
 }
 
-/// The pairs of lines of which an end is near one of the other, with the ends that are not, and how
-/// near.
+/// The pairs of lines with nearby ends: the lines, their other ends, and the gap in pixels.
 fn meeting(lines: &[ImageLine]) -> Vec<(usize, usize, [usize; 2], f64)> {
     let mut all = Vec::new();
     for (i, a) in lines.iter().enumerate() {
@@ -110,7 +110,7 @@ fn meeting(lines: &[ImageLine]) -> Vec<(usize, usize, [usize; 2], f64)> {
             let slack = SHORT + PART * a.length.min(b.length);
             for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let gap = (a.ends[p] - b.ends[q]).norm();
-                // Not where one f64 values back on the other.
+                // Not where one doubles back on the other.
                 let way =
                     |l: &ImageLine, end: usize| if end == 0 { l.direction } else { -l.direction };
                 let turns = way(a, p).dot(&way(b, q)) < 1.0 - SHARP;
@@ -137,7 +137,7 @@ fn corners(own: u32, line: &ImageLine, end: usize, lines: &[ImageLine]) -> Vec<L
         }
         let slack = SHORT + PART * other.length.min(line.length);
         let [off, along] = other.place(&tip);
-        // Too far away to be worth a closer look.
+        // Too far away to be a corner.
         let reach = slack + SHORT + PART * line.length;
         if along < -reach || along > other.length + reach || off.abs() > reach {
             continue;
@@ -147,7 +147,7 @@ fn corners(own: u32, line: &ImageLine, end: usize, lines: &[ImageLine]) -> Vec<L
             flat.push(i);
             continue;
         }
-        // line(t) = ends[0] + t direction meets the other.
+        // line(t) = ends[0] + t direction intersects the other.
         let t = other.direction.perp(&(line.ends[0] - other.ends[0])) / sine;
         let at = line.ends[0] + line.direction * t;
         let beyond = if end == 0 { -t } else { t - line.length };
@@ -158,7 +158,7 @@ fn corners(own: u32, line: &ImageLine, end: usize, lines: &[ImageLine]) -> Vec<L
         // The other ends there, and leaves it one way.
         for (gap, sign, length) in [(-s, 1.0, other.length - s), (s - other.length, -1.0, s)] {
             let near = gap.abs() <= slack;
-            // Or it passes the corner: a silhouette that is met.
+            // Or it passes the corner: a silhouette at which the line ends.
             let passes = gap < 0.0 && length > LIMB;
             if (near || passes) && length > LIMB {
                 all.push(LineCorner {
@@ -178,7 +178,7 @@ fn corners(own: u32, line: &ImageLine, end: usize, lines: &[ImageLine]) -> Vec<L
     all
 }
 
-/// The corner of a line with another that hardly turns from it, where a third tells the place.
+/// The corner of a line with a nearly parallel one, at a known corner with a third line.
 fn third(
     number: u32,
     other: &ImageLine,
@@ -194,7 +194,7 @@ fn third(
     let slack = SHORT + PART * other.length.min(line.length);
     let near = known.iter().filter_map(|corner| {
         let [off, along] = other.place(&corner.at);
-        // It goes on from the corner, away from the line.
+        // It continues from the corner, away from the line.
         let (gap, sign) = match other.direction.dot(&outwards) > 0.0 {
             true => (-along, 1.0),
             false => (along - other.length, -1.0),
@@ -211,5 +211,5 @@ fn third(
     near.min_by(|a, b| a.gap.total_cmp(&b.gap))
 }
 
-/// How far, in pixels, a line may pass by the corner of two others.
+/// The greatest distance, in pixels, of a line from the corner of two others.
 const THIRD: f64 = 3.0;

@@ -1,13 +1,13 @@
-//! Pictures of many pixels, made smaller: what detectors and distances in pixels are made for.
+//! Reduction of large images to the size for which detectors and distances in pixels are set.
 
 use crate::camera::Pinhole;
 use premio_detect::Grey;
 
-/// A picture with a longer side is halved, in pixels.
+/// The longest side of an image, in pixels; larger ones are halved.
 const LONGEST: usize = 1280;
 
-/// A picture that is not too large, its camera, and how many of the pixels of the one that was given
-/// each of its sides has: one, two, four and so on.
+/// The image halved until its longer side is at most `LONGEST`, its camera, and the factor of the
+/// reduction: one, two, four and so on.
 pub fn downsampled(grey: Grey, camera: Pinhole) -> (Grey, Pinhole, u32) {
     let (mut grey, mut camera, mut scale) = (grey, camera, 1);
     while grey.width.max(grey.height) > LONGEST {
@@ -18,7 +18,7 @@ pub fn downsampled(grey: Grey, camera: Pinhole) -> (Grey, Pinhole, u32) {
     (grey, camera, scale)
 }
 
-/// The picture of the means of two by two pixels; what is left over at the right and below is cut off.
+/// The image of the means of 2 × 2 pixels. An odd last column or row is cut off.
 fn halved(grey: &Grey) -> Grey {
     let level = |x: usize, y: usize| {
         let at = |dx: usize, dy: usize| grey.levels[(2 * y + dy) * grey.width + 2 * x + dx];
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
     use nalgebra::Point3;
 
-    /// A point is seen in the pixel that holds the one it was seen in.
+    /// The image of a point lies in the reduced pixel that contains the original one.
     #[test]
     fn the_camera_shrinks_with_the_picture() {
         let camera = Pinhole {

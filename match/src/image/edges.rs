@@ -1,17 +1,17 @@
-//! Edge pixels by place and orientation.
+//! Edge pixels indexed by position and orientation.
 
 use nalgebra::{Point2, Vector2};
 use premio_detect::{Detection, SegmentShape};
 use std::f64::consts::PI;
 
-/// How many classes of orientation there are.
+/// The number of orientation classes.
 pub const BINS: usize = 16;
-/// How near an edge has to be.
+/// The tolerance for the distance of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// Two pixels: the pose is known.
+    /// Two pixels, for a refined pose.
     Fine,
-    /// Five pixels: it is about known.
+    /// Five pixels, for an approximate pose.
     Coarse,
 }
 
@@ -26,19 +26,19 @@ impl Reach {
     }
 }
 
-/// Next to the border of a picture, in pixels, edges are not found.
+/// The width of the border of an image, in pixels, in which no edges are found.
 const BORDER: f64 = 6.0;
 
-/// The class of the orientation of a normal, modulo half a turn.
+/// The orientation class of a normal, modulo 180 degrees.
 pub fn bin(normal: &Vector2<f64>) -> usize {
     let turn = normal.y.atan2(normal.x) / PI;
     ((turn + 1.0) * BINS as f64) as usize % BINS
 }
 
-/// Chains are cut into pieces of so many pixels.
+/// The length of the pieces into which chains are cut, in pixels.
 pub const PIECE: usize = 12;
 
-/// By edge pixel: the number of its piece.
+/// By edge pixel: the index of its piece.
 fn pieces(detection: &Detection) -> Vec<u32> {
     let mut all = vec![0; detection.pixels.len()];
     let mut next = 0;
@@ -53,8 +53,8 @@ fn pieces(detection: &Detection) -> Vec<u32> {
     all
 }
 
-/// By edge pixel: the unit normal of the segment that it is of, and that one's length in pixels and
-/// number; of a curved one the pixel's gradient.
+/// By edge pixel: the unit normal of its segment, and the segment's length in pixels and index. On
+/// a curved segment the normal is the pixel's gradient.
 fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)>> {
     let mut all = vec![None; detection.pixels.len()];
     for (number, segment) in (0..).zip(&detection.segments) {
@@ -74,22 +74,22 @@ fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)
     all
 }
 
-/// An edge pixel near a place.
+/// An edge pixel near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeHit {
-    /// How far it is along the normal, in pixels.
+    /// Its signed distance along the normal, in pixels.
     pub offset: f64,
-    /// Its number in the detection.
+    /// Its index in the detection.
     pub pixel: u32,
     /// The number of its segment.
     pub segment: u32,
-    /// The number of the piece of a chain that it is of.
+    /// The index of its piece of a chain.
     pub piece: u32,
 }
 
-/// Of longer segments than this, in pixels, none is preferred.
+/// The segment length, in pixels, above which longer segments are not preferred.
 const LONG: f64 = 60.0;
-/// How much less a pixel at the end of the reach is worth than one at the place.
+/// How much less a pixel at the greatest distance is preferred than one at the point.
 const NEARER: f64 = 0.8;
 
 /// An edge pixel.
@@ -106,20 +106,20 @@ struct Pixel {
     piece: u32,
 }
 
-/// The edge pixels of a picture.
+/// The edge pixels of an image.
 #[derive(Clone, Debug)]
 pub struct Edges {
     width: usize,
     height: usize,
-    /// By pixel: its number and one, or nothing.
+    /// By pixel: the index of its edge pixel plus one, or zero.
     numbers: Vec<u32>,
-    /// By reach and pixel: the orientations, by bit, of edge pixels within it.
+    /// By tolerance and pixel: the orientations of edge pixels within the tolerance, as bits.
     near: [Vec<u16>; 2],
     pixels: Vec<Pixel>,
 }
 
 impl Edges {
-    /// The edge pixels of a detection, but for those of chains that are too short to be segments.
+    /// The edge pixels of a detection, without those of chains too short to be segments.
     pub fn new(detection: &Detection, [width, height]: [usize; 2]) -> Self {
         let mut edges = Self {
             width,
@@ -170,23 +170,23 @@ impl Edges {
         }
     }
 
-    /// Whether a place lies in the picture, off its border, so that edges are found there.
+    /// Whether a point lies in the image and off its border, where edges are found.
     pub fn reaches(&self, at: &Point2<f64>) -> bool {
         let inside = |v: f64, size: usize| v >= BORDER && v < size as f64 - 1.0 - BORDER;
         inside(at.x, self.width) && inside(at.y, self.height)
     }
 
-    /// Whether a place lies in the picture, off its border, and if so, whether an edge of a class of
-    /// orientation is within reach.
+    /// Whether an edge of an orientation class lies within the tolerance of a point; none for a
+    /// point outside the image or on its border.
     pub fn contains(&self, at: &Point2<f64>, bin: usize, reach: Reach) -> Option<bool> {
         let (x, y) = ((at.x + 0.5) as usize, (at.y + 0.5) as usize);
         self.reaches(at)
             .then(|| self.near[reach as usize][y * self.width + x] >> bin & 1 == 1)
     }
 
-    /// The edge pixel along a normal to either side of a place, within so many pixels, whose gradient
-    /// is along the normal to within an angle of so large a cosine: of several the one that is near,
-    /// and of a long segment.
+    /// The edge pixel along a normal to either side of a point, within a distance in pixels, whose
+    /// gradient has at least the given cosine with the normal. It prefers near pixels and long
+    /// segments.
     pub fn along(
         &self,
         at: &Point2<f64>,
@@ -210,8 +210,8 @@ impl Edges {
         best.map(|b| b.1)
     }
 
-    /// The edge pixels within reach of a place along a normal, from one side to the other, the first
-    /// of each segment.
+    /// The edge pixels along a normal within a distance of a point, from one side to the other, the
+    /// first of each segment.
     pub fn all_along(
         &self,
         at: &Point2<f64>,

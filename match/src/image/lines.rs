@@ -1,11 +1,11 @@
-//! Lines of a picture: straight segments, and those that become one where an edge is broken.
+//! Lines of an image: straight segments, and chains of collinear segments of a broken edge.
 
 use nalgebra::{Point2, Vector2};
 use premio_detect::{Detection, SegmentShape};
 
-/// How far, in pixels, pieces of one line may lie off it.
+/// The greatest distance of pieces from their line, in pixels.
 const OFF: f64 = 1.5;
-/// The longest gap between pieces of one line, in the length of the shorter one.
+/// The longest gap between pieces of one line, relative to the shorter piece.
 const GAP: f64 = 1.0;
 
 /// A straight piece of an edge.
@@ -37,7 +37,8 @@ impl ImageLine {
         })
     }
 
-    /// The distance of a point from the line, to its left above zero, and how far along it is.
+    /// The signed distance of a point from the line, positive on its left, and its position along
+    /// it.
     pub fn place(&self, p: &Point2<f64>) -> [f64; 2] {
         let d = p - self.ends[0];
         [self.direction.perp(&d), self.direction.dot(&d)]
@@ -49,8 +50,8 @@ impl ImageLine {
     }
 }
 
-/// The lines of a detection, the longest first: its straight segments, and besides those that two or
-/// more of them lie on end to end.
+/// The lines of a detection, the longest first: its straight segments, and lines joined from two or
+/// more of them end to end.
 pub fn lines(detection: &Detection) -> Vec<ImageLine> {
     let mut all: Vec<ImageLine> = Vec::new();
     for (i, segment) in (0..).zip(&detection.segments) {
@@ -85,7 +86,7 @@ fn longest_first(lines: &mut [ImageLine]) {
     });
 }
 
-/// A line with the piece that follows it best; none if nothing does.
+/// A line joined with the piece that continues it with the smallest gap; none if there is none.
 fn next(line: &ImageLine, all: &[ImageLine]) -> Option<ImageLine> {
     let fits = all.iter().filter_map(|piece| {
         if line.segments.contains(&piece.segments[0]) {

@@ -1,4 +1,4 @@
-//! What is found in a picture, made ready to be matched.
+//! The features of an image, prepared for matching.
 
 mod corners;
 mod downsampled;
@@ -12,19 +12,19 @@ pub use lines::{ImageLine, lines};
 
 use premio_detect::{Detection, Detector, Grey, Mask, PixelMask, SegmentShape};
 
-/// A picture with its features.
+/// The features of an image.
 #[derive(Clone, Debug)]
 pub struct ImageFeatures {
     /// Its width and height in pixels.
     pub size: [usize; 2],
-    /// What the detector finds.
+    /// The result of the detector.
     pub detection: Detection,
     /// Its lines, the longest first.
     pub lines: Vec<ImageLine>,
-    /// Its edge pixels by place and orientation.
+    /// Its edge pixels indexed by position and orientation.
     pub edges: Edges,
-    /// How far edge pixels are off their lines, in pixels: the middle of the root mean squares of long
-    /// straight segments.
+    /// The residual of edge pixels from their lines, in pixels: the median of the root mean squares
+    /// of long straight segments.
     pub straightness: f64,
 }
 
@@ -67,10 +67,10 @@ fn straightness(detection: &Detection) -> f64 {
     all.get(all.len() / 2).copied().unwrap_or(0.5)
 }
 
-/// A segment of so many pixels is long.
+/// The least length of a long segment, in pixels.
 const LONG: f64 = 40.0;
 
-/// The detector for pictures of which no model tells one.
+/// The detector for images when no model specifies one.
 pub fn detector() -> Detector {
     Detector {
         mask: Mask::Gaussian { sigma: 1.0 },

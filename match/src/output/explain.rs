@@ -1,37 +1,37 @@
-//! Why a match won, in words.
+//! The explanation of a result in words.
 
 use crate::output::report::{FeatureReport, FeatureState, MatchReport};
 use crate::verification::part_match::PartMatch;
 use premio_predict::image_arcs::ArcSource;
 use std::fmt::Write;
 
-/// What tells for and against the likeliest match, if there is any: feature by feature, and what its pose
-/// was fitted to; and why a part is not found.
+/// The evidence for and against the likeliest match, feature by feature, and the Occam factor of
+/// its pose; and why a part is not found.
 pub fn explained(best: Option<&PartMatch>, report: &MatchReport) -> String {
     let mut text = match &report.reason {
         Some(reason) => format!("not found: {reason}\n"),
         None => String::new(),
     };
     if let Some(best) = best {
-        text += &weighed(best, report);
+        text += &terms(best, report);
     }
-    text += &worked(report);
+    text += &search_work(report);
     let mut order: Vec<_> = report.features.iter().collect();
     order.sort_by(|a, b| b.score.total_cmp(&a.score));
     for feature in order {
-        text += &told(feature);
+        text += &feature_line(feature);
     }
     text
 }
 
-/// What a match weighs, and of what.
-fn weighed(best: &PartMatch, report: &MatchReport) -> String {
+/// The score of a match and its terms.
+fn terms(best: &PartMatch, report: &MatchReport) -> String {
     let mut text = String::new();
     let verdict = if report.found { "found" } else { "likeliest" };
     let _ = writeln!(
         text,
-        "{verdict}, probability {:.3}: ratio {:.1} (score {:.1} against clutter, {:.1} fitted by the pose, \
-         {:.1} of relations)",
+        "{verdict}, probability {:.3}: log-likelihood ratio {:.1} (score {:.1} against clutter, {:.1} \
+         fitted by the pose, {:.1} from relations)",
         report.probability,
         best.ratio,
         best.score,
@@ -40,10 +40,10 @@ fn weighed(best: &PartMatch, report: &MatchReport) -> String {
     );
     let _ = writeln!(
         text,
-        "odds {:.1}: edges {:.2} px off contours (as wholes {:.2}, beside that {:.2}; off lines {:.2}), \
-         {:.0} % of these in the picture; the shape told by {:.1}, denied by {:.1}, {:.0} % apart from one \
-         plane, {:.0} % framed; {:.0} % of the carriers found, the rest untold by {:.1}; {} edges go on \
-         past a vertex",
+        "log-odds {:.1}: residual {:.2} px (systematic {:.2}, roughness {:.2}; of lines {:.2}), {:.0} % of \
+         the contours in the picture; shape evidence {:.1} for and {:.1} against, {:.0} % off one plane, \
+         {:.0} % framed; {:.0} % of the carriers found, the others missing with {:.1}; {} edges overrun a \
+         vertex",
         best.odds,
         best.rms,
         best.systematic_offset.wholes,
@@ -60,13 +60,13 @@ fn weighed(best: &PartMatch, report: &MatchReport) -> String {
     );
     if !report.rivals.is_empty() {
         let count = report.rivals.len();
-        let _ = writeln!(text, "{count} more poses are about as likely (`rivals`)");
+        let _ = writeln!(text, "{count} other poses are about as likely (`rivals`)");
     }
     text
 }
 
-/// What the search did.
-fn worked(report: &MatchReport) -> String {
+/// The work of the search.
+fn search_work(report: &MatchReport) -> String {
     let work = &report.work;
     let mut text = String::new();
     let _ = writeln!(
@@ -88,20 +88,20 @@ fn worked(report: &MatchReport) -> String {
     text
 }
 
-/// What a feature adds.
-fn told(feature: &FeatureReport) -> String {
+/// The score of a feature.
+fn feature_line(feature: &FeatureReport) -> String {
     let state = match feature.state {
         FeatureState::Whole => "whole",
         FeatureState::Broken => "broken",
         FeatureState::Missed => "missed",
     };
-    let beside = feature.offset.zip(feature.systematic_offset);
-    let beside = beside.map_or(String::new(), |(offset, off)| {
+    let residual = feature.offset.zip(feature.systematic_offset);
+    let residual = residual.map_or(String::new(), |(offset, off)| {
         let rms = off.wholes.hypot(off.edges);
-        format!(", {offset:+.2} px beside it at first, {rms:.2} at last")
+        format!(", offset {offset:+.2} px when assigned, residual {rms:.2} px at the pose")
     });
     format!(
-        "  {:+6.1}  {} {} {state}: {:.0} % of {:.0} px{beside} (against it {:.1})\n",
+        "  {:+6.1}  {} {} {state}: {:.0} % of {:.0} px{residual} ({:.1} against the part)\n",
         feature.score,
         feature.source.word(),
         number(&feature.source),

@@ -1,5 +1,5 @@
-//! What was found, as it is handed on (`premio.match/1`), and a line for the evaluation of others
-//! (the CSV of the BOP challenge, Hodan et al. 2018).
+//! The report of a match (`premio.match/1`), and its line for evaluations by others (the CSV of the
+//! BOP challenge, Hodan et al. 2018).
 
 use crate::hypothesis::INSIDE;
 use crate::image::ImageFeatures;
@@ -61,15 +61,15 @@ impl From<&Frame> for SymmetryAxis {
     }
 }
 
-/// What a feature of the part is in the picture.
+/// The state of a feature of the part in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FeatureState {
-    /// Its edge is there.
+    /// Its edge is found.
     Whole,
-    /// Some of its edge is.
+    /// A part of its edge is found.
     Broken,
-    /// It is not.
+    /// It is not found.
     Missed,
 }
 
@@ -81,20 +81,20 @@ pub struct FeatureReport {
     pub source: ArcSource,
     /// Its visible length in the picture, in pixels.
     pub length: f64,
-    /// What it is there.
+    /// Its state in the picture.
     pub state: FeatureState,
     /// The share of it that is covered.
     pub share: f64,
-    /// At how many of its vertices that are seen its edge ends, and goes on.
+    /// At how many of its visible vertices its edge ends, and how many it overruns.
     pub ends: Option<[u32; 2]>,
-    /// How far next to it, in pixels, its edge runs.
+    /// The mean signed distance of its edge from it, in pixels, when the edge was assigned.
     pub offset: Option<f64>,
-    /// How far the edge is off its contour at the pose, as root mean squares in pixels.
+    /// The residual of the edge at the pose, as root mean squares in pixels.
     #[serde(rename = "astray")]
     pub systematic_offset: Option<SystematicOffset>,
-    /// The ends of the segments that it is.
+    /// The ends of its segments.
     pub segments: Vec<[[f64; 2]; 2]>,
-    /// What it adds to the score, and what of that tells against the part.
+    /// Its contribution to the score, and the part of it that is evidence against the part.
     pub score: f64,
     /// See `score`.
     pub against: f64,
@@ -124,16 +124,17 @@ pub struct InstanceReport {
     pub found: bool,
 }
 
-/// What the search for a part did.
+/// The work of the search for a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct SearchWork {
     /// Segments that the detector found.
     pub segments: usize,
-    /// Chains of lines with one, and with two, between their corners.
+    /// The numbers of chains with one line, and with two, between their corners.
     pub chains: [usize; 2],
-    /// Poses that they proposed.
+    /// The number of poses that they proposed.
     pub proposed: usize,
-    /// Whether chains, ellipses or paths were left out, so that something better may have been missed.
+    /// Whether chains, ellipses or paths were left out, so that a better match may have been
+    /// missed.
     pub cut: bool,
     /// The search for the correspondences at the pose.
     #[serde(flatten)]
@@ -142,7 +143,7 @@ pub struct SearchWork {
     pub pruning: f64,
 }
 
-/// How long it took, in seconds.
+/// Run times in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct MatchSeconds {
     /// To detect features.
@@ -151,7 +152,7 @@ pub struct MatchSeconds {
     pub matching: f64,
 }
 
-/// What was found in a picture.
+/// The result for a picture.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct MatchReport {
     /// [`SCHEMA`].
@@ -162,76 +163,77 @@ pub struct MatchReport {
     pub part: String,
     /// Whether the part is there.
     pub found: bool,
-    /// Why it is taken not to be.
+    /// Why it is not found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// How likely it is there.
+    /// The probability that it is there.
     pub probability: f64,
-    /// The logarithm of how much more likely the picture is with the part at the pose than with clutter
-    /// or another thing.
+    /// The log-likelihood ratio of the picture with the part at the pose against clutter or another
+    /// thing.
     pub ratio: Option<f64>,
-    /// The logarithm of the odds that what is found so is the part: the less, the farther edges are off
-    /// its contours, the more of it is missed or cut off by the border, and the less its shape is told.
-    /// Its sum with `ratio`, over 3.5, is the logarithm of the odds of `probability`, as what edges tell is
-    /// told by others, too; where nothing is found of some carriers (`shape`), the odds are less, that it
-    /// is the part rather than a piece of it.
+    /// The prior log-odds that a thing that agrees this well is the part. They are lower the
+    /// greater the residuals are, the more of the part is missed or cut off by the border, and the
+    /// less its shape is determined. `probability` has the log-odds (`ratio` + `odds`) / 3.5,
+    /// because the evidence of edges is correlated. Where nothing is found of some carriers
+    /// (`shape`), the odds against a piece of the part limit it.
     pub odds: Option<f64>,
-    /// What is told of the part's shape.
+    /// The evidence of the part's shape.
     pub shape: Option<ShapeEvidence>,
-    /// How far features are off as wholes, and their edges next to that: of another thing that is like the
-    /// part the former is more.
+    /// The systematic offset of features and the roughness of their edges. Another thing that is
+    /// like the part has a greater systematic offset.
     #[serde(rename = "astray")]
     pub systematic_offset: Option<SystematicOffset>,
-    /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
-    /// it, some along either, as of what is drawn or framed.
+    /// From 0 to 1: how much of what is found runs along the picture's rows and columns, as in a
+    /// drawing or a frame. It is 1 if all of it does, some along either.
     pub framed: Option<f64>,
-    /// The same as `ratio` against clutter alone: what the search maximises.
+    /// The log-likelihood ratio against clutter alone, which the search maximises.
     pub score: Option<f64>,
-    /// What of the score the pose is fitted to.
+    /// The Occam factor of the pose, by which the score counts less.
     pub fitted: Option<f64>,
-    /// What relations add to the score.
+    /// The contribution of relations to the score.
     pub related: Option<f64>,
-    /// The part of the visible contours that lies in the picture, and of that the covered share.
+    /// The share of the visible contours that lies in the picture, and the covered share of that.
     pub inside: Option<f64>,
     /// See `inside`.
     pub covered: Option<f64>,
-    /// The pose; of what is not found, the likeliest.
+    /// The pose; the likeliest one if the part is not found.
     #[serde(flatten)]
     pub pose: Option<Pose>,
-    /// The covariance of the pose's error: turn about the camera's axes through the part's origin, in
-    /// radians, and move, in the part's unit; row by row.
+    /// The covariance of the pose's error: rotation about the camera's axes through the part's
+    /// origin, in radians, and translation, in the part's unit; row by row.
     pub covariance: Option<[[f64; 6]; 6]>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: Option<f64>,
-    /// How far edges are off lines in the picture, for long ones: as far may `rms` be.
+    /// The residual of long straight segments from their lines in the picture, in pixels: `rms` may
+    /// be as large.
     pub straightness: f64,
-    /// The other poses that the part's symmetries make alike.
+    /// The other poses that are equivalent by the part's symmetries.
     pub alternatives: Vec<Pose>,
-    /// Of a part that is turned about an axis, the axis, in the part's frame: the pose may be turned
-    /// about it by any angle.
+    /// The axis of a part of revolution, in the part's frame: the pose may be rotated about it by
+    /// any angle.
     pub axis: Option<SymmetryAxis>,
-    /// Other poses at which the part is found, too, and whose odds are less by no more than e³, up to
-    /// symmetries.
+    /// Other accepted poses whose odds are less by a factor of at most e³, up to symmetries.
     pub rivals: Vec<Rival>,
-    /// The part as often as it is found, each with edges of its own, the likeliest first: that is the one
-    /// that the report is of. More may be in the picture, as only the best poses are searched.
+    /// The instances of the part, each with edges of its own, the likeliest first. The report is of
+    /// the first one. The picture may show more of them, because only the best poses are searched.
     pub instances: Vec<InstanceReport>,
     /// The correspondences.
     pub features: Vec<FeatureReport>,
-    /// Of a sequence: whether it was looked for anew, rather than from its last pose.
+    /// In a sequence: whether the whole picture was searched, rather than from the last pose.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anew: Option<bool>,
-    /// What the search did.
+    /// The work of the search.
     pub work: SearchWork,
-    /// How many pixels of the file make a side of one that lengths and distances are told in: more than
-    /// one of large pictures. Ends of segments are in the file's.
+    /// The side in pixels of the file of one pixel of the report: more than one for large pictures.
+    /// Lengths and distances are in pixels of the report, the ends of segments in pixels of the
+    /// file.
     pub scale: u32,
-    /// How long it took.
+    /// The run times.
     pub seconds: MatchSeconds,
 }
 
 impl MatchReport {
-    /// The report of a finding.
+    /// The report of a search.
     pub fn new(
         part: &SoughtPart<'_>,
         [image, name]: [&str; 2],
@@ -329,7 +331,7 @@ fn instances(finding: &SearchResult) -> Vec<InstanceReport> {
 }
 
 fn features(found: &PartMatch, picture: &ImageFeatures, scale: u32) -> Vec<FeatureReport> {
-    // The middles of pixels that are means of others lie between those.
+    // The centre of a pixel that is the mean of others lies between theirs.
     let side = f64::from(scale);
     let given = |v: f64| side * (v + 0.5) - 0.5;
     let features = found.pairs.iter().map(|pair| {
@@ -359,10 +361,10 @@ fn features(found: &PartMatch, picture: &ImageFeatures, scale: u32) -> Vec<Featu
     features.collect()
 }
 
-/// Why a part is taken not to be there.
+/// Why a part is not found.
 fn reason(part: &SoughtPart<'_>, picture: &ImageFeatures, finding: &SearchResult) -> String {
     if !part.proposes() {
-        return "the part has neither straight edges that meet nor round ones, which poses are found by"
+        return "the part has neither straight edges that share a vertex nor circular edges to propose poses"
             .to_owned();
     }
     let segments = picture.detection.segments.len();
@@ -370,28 +372,28 @@ fn reason(part: &SoughtPart<'_>, picture: &ImageFeatures, finding: &SearchResult
         return match (segments, finding.proposed, &finding.little) {
             (0, ..) => "the detector finds no segment in the picture".to_owned(),
             (_, 0, _) => {
-                format!("none of {segments} segments make corners that the part's could be")
+                format!("no corner of the {segments} segments matches one of the part")
             }
             (_, _, Some(few)) => format!(
-                "at its likeliest place {} features are found, in {:.0} pixels of contour, which are {:.0} \
-                 % of it: a pose takes {}, {SMALLEST} and {:.0} %",
+                "the likeliest match has {} features, {:.0} pixels of contour and {:.0} % of the contour in \
+                 the picture: a pose needs {}, {SMALLEST} and {:.0} %",
                 few.found(),
                 few.length(),
                 100.0 * few.inside(),
                 FEWEST[usize::from(part.axis.is_some())],
                 100.0 * INSIDE
             ),
-            (_, n, None) => format!("none of {n} poses that its corners propose fits the picture"),
+            (_, n, None) => format!("none of the {n} proposed poses fits the picture"),
         };
     };
     let (found, all) = (best.found(), best.pairs.len());
     let others = match (is_figure(best), best.weight() >= 0.0) {
-        (true, _) => "all of it could be a figure on a flat thing, or a frame",
-        (_, true) => "it could be another thing, which is like what is found and lacks the rest",
-        _ => "other things look as much like it",
+        (true, _) => "all of them could be a figure on a flat thing, or a frame",
+        (_, true) => "another thing that has these features and lacks the others is likelier",
+        _ => "other things agree as well with the picture",
     };
     format!(
-        "at its likeliest place {found} of {all} features are found, {:.0} % of their length: {others}",
+        "the likeliest match has {found} of {all} features, {:.0} % of their length: {others}",
         100.0 * best.share()
     )
 }

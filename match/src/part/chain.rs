@@ -1,4 +1,4 @@
-//! Chains of three lines of a part, from which a pose is found.
+//! Chains of three lines of a part, which determine a pose.
 
 use nalgebra::{Point3, Vector3};
 

@@ -1,4 +1,4 @@
-//! What predictions over many setups tell of a part's features.
+//! The detectability of a part's features, from predictions over many setups.
 
 use nalgebra::Vector3;
 use premio_kernel::brep::Brep;
@@ -8,46 +8,47 @@ use premio_predict::model::observation::RelationKind;
 use premio_predict::model::record::Record;
 use std::collections::BTreeMap;
 
-/// How a feature is found where it is visible.
+/// The counts of a visible feature's states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct States {
-    /// How often it is whole, broken, missed.
+    /// Whole, broken, missed.
     counts: [f64; 3],
 }
 
-/// What is learned of a part.
+/// The detectability of a part's features.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DetectabilityPrior {
-    /// By feature: how it is found seen with two faces, and as an outline.
+    /// By feature: its states with two visible faces, and as an outline.
     states: BTreeMap<ArcSource, [States; 2]>,
-    /// By feature: the one it depends on, and how likely it is found where that is missed and found.
+    /// By feature: the one it depends on, and the probabilities that it is found where that is
+    /// missed and where it is found.
     pub(crate) codetection: BTreeMap<ArcSource, (ArcSource, [f64; 2])>,
-    /// By pair of features: how often both are found where they meet, and how often their junction is
-    /// kept then.
+    /// By pair of features with a junction: how often both are found, and how often their junction
+    /// is then preserved.
     junctions: BTreeMap<[ArcSource; 2], [f64; 2]>,
-    /// How likely two features that do not meet look as if they did.
+    /// The probability that two features without a junction appear to have one.
     chance: f64,
-    /// Whether nothing is known.
+    /// Whether all features have the same rates.
     uniform: bool,
 }
 
-/// As often a feature of which nothing is known is taken to be whole, broken and missed: seen with two
-/// faces, and as an outline. What is known is added, since pictures are not all like the setups.
+/// Prior counts of whole, broken and missed: with two visible faces, and as an outline. They are
+/// added to the observed counts, because images differ from the setups.
 const UNKNOWN: [[f64; 3]; 2] = [[12.4, 6.0, 1.6], [15.8, 4.0, 0.2]];
-/// How often a junction is kept of which nothing is known, and by chance.
+/// The prior probability that a junction is preserved, and the least probability by chance.
 const JUNCTION: [f64; 2] = [0.75, 0.15];
-/// What is known counts as no more observations than these.
+/// The greatest weight of the observed counts.
 const MOST: f64 = 20.0;
-/// As if so many junctions were known of every kind.
+/// The prior count of a junction.
 const PRIOR: f64 = 4.0;
 
 impl DetectabilityPrior {
-    /// What is taken where there is no model.
+    /// The prior without a model.
     pub fn nothing() -> Self {
         Self::default()
     }
 
-    /// The same rate for all features, no relations, nothing found together: what a search has without
+    /// Equal rates for all features, and no relations or co-detection: a search without
     /// predictions.
     pub fn uniform() -> Self {
         Self {
@@ -56,7 +57,7 @@ impl DetectabilityPrior {
         }
     }
 
-    /// What the records of a part's model tell.
+    /// The prior from the records of a part's model.
     pub fn new(records: &[Record], brep: &Brep) -> Self {
         let mut learned = Self {
             chance: JUNCTION[1],
@@ -115,7 +116,8 @@ impl DetectabilityPrior {
         learned
     }
 
-    /// How likely a feature is whole, broken and missed: seen with two faces, and as an outline.
+    /// The probabilities that a feature is whole, broken and missed: with two visible faces, and as
+    /// an outline.
     pub fn states(&self, source: &ArcSource) -> [[f64; 3]; 2] {
         if self.uniform {
             return [[0.6, 0.2, 0.2]; 2];
@@ -130,7 +132,8 @@ impl DetectabilityPrior {
         })
     }
 
-    /// How likely the junction of two features is kept where both are found, and by chance.
+    /// The probabilities that the junction of two features is preserved where both are found, and
+    /// by chance.
     pub fn junction(&self, a: &ArcSource, b: &ArcSource) -> [f64; 2] {
         if self.uniform {
             return [0.5; 2];
@@ -162,7 +165,7 @@ fn is_outline(brep: &Brep, source: &ArcSource, view: &[f64]) -> bool {
     turned.is_none_or(|t| t < 0.0)
 }
 
-/// No rate is closer to certainty.
+/// The least distance of a rate from 0 and 1.
 pub(crate) const MIN_RATE: f64 = 1.0 / 64.0;
 
 fn pair(a: &ArcSource, b: &ArcSource) -> [ArcSource; 2] {

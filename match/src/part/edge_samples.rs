@@ -1,26 +1,26 @@
-//! Points along the edges and limbs of a part, at which images are asked.
+//! Samples along the edges and limbs of a part, at which images are evaluated.
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::EdgeId;
 use std::ops::Range;
 
-/// How many points there are along the size of the part, and of an edge at least and at most.
+/// The number of samples along the size of the part, and the fewest and most of an edge.
 const ALONG: f64 = 24.0;
 const MIN_RATE: usize = 6;
 const MOST: usize = 64;
 
-/// An edge of a part.
+/// A sampled edge of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledEdge {
-    /// Which.
+    /// The edge.
     pub edge: EdgeId,
-    /// Its marks.
+    /// The range of its samples.
     pub marks: Range<usize>,
-    /// How likely it is whole, broken and missed where it is visible: with both its faces, and with
-    /// one of them, as an outline.
+    /// The probabilities that it is whole, broken and missed where it is visible: with both its
+    /// faces, and with one of them, as an outline.
     pub states: [[f64; 3]; 2],
-    /// Its ends, where it has any, and the unit vectors in which it leaves them outwards.
+    /// Its ends, where it has any, and the unit tangents there that point away from it.
     pub ends: Option<[(Point3<f64>, Vector3<f64>); 2]>,
     /// Its length.
     pub length: f64,
@@ -29,17 +29,18 @@ pub struct SampledEdge {
 /// A point of an edge or of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeSample {
-    /// Where.
+    /// The point.
     pub point: Point3<f64>,
     /// The unit tangent.
     pub tangent: Vector3<f64>,
-    /// The outward normals of the faces on both sides; of a limb none, which is known to be visible.
+    /// The outward normals of the faces on both sides; none for a limb, which is known to be
+    /// visible.
     pub normals: Option<[Vector3<f64>; 2]>,
     /// The parameter on the edge's curve.
     pub parameter: f64,
-    /// The stroke; a limb's number after them.
+    /// The index of its edge; for a limb the number of edges plus its own index.
     pub stroke: usize,
-    /// The length that it stands for.
+    /// The length that it represents.
     pub step: f64,
 }
 
@@ -59,16 +60,16 @@ impl EdgeSample {
     }
 }
 
-/// What is seen of a part from about a direction.
+/// The visibility of a part from a direction.
 #[derive(Clone, Debug, Default)]
 pub struct PartView {
-    /// By mark: whether something lies before it.
+    /// By sample: whether a face occludes it.
     pub hidden: Vec<bool>,
-    /// The visible limbs.
+    /// The samples of visible limbs.
     pub limbs: Vec<EdgeSample>,
 }
 
-/// The strokes of a part's edges along which the normal jumps, with their marks.
+/// The sharp edges of a part, with their samples.
 pub fn marks(
     brep: &Brep,
     radius: f64,

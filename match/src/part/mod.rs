@@ -1,5 +1,5 @@
-//! A part as it is looked for: points along its edges, the chains of its straight edges, its
-//! symmetries, and what it hides of itself.
+//! A part prepared for the search: samples along its edges, the chains of its straight edges, its
+//! symmetries, and its visibility by direction.
 
 mod chain;
 pub mod detectability_prior;
@@ -21,7 +21,7 @@ use premio_kernel::geometry::frame::Frame;
 use premio_predict::image_arcs::ArcSource;
 use visibility_cache::VisibilityCache;
 
-/// A part that is looked for.
+/// A part that is searched for.
 #[derive(Debug)]
 pub struct SoughtPart<'a> {
     /// Its boundary.
@@ -32,19 +32,19 @@ pub struct SoughtPart<'a> {
     pub centre: Point3<f64>,
     /// Half the diagonal of its box.
     pub radius: f64,
-    /// Its edges along which the normal jumps.
+    /// Its sharp edges: those along which the normal jumps.
     pub strokes: Vec<SampledEdge>,
-    /// Points along them.
+    /// Samples along them.
     pub marks: Vec<EdgeSample>,
-    /// The turns that bring the part onto itself; the first does nothing.
+    /// The rotational symmetries of the part; the first is the identity.
     pub symmetries: Vec<Symmetry>,
-    /// Of a part that is turned about one axis, all edges whole circles about it, the axis: z, through
+    /// The axis of a part of revolution, all of whose edges are whole circles about it: z, through
     /// the origin.
     pub axis: Option<Frame>,
-    /// The strokes that are circles, whole or not: one of those that symmetries bring onto each other.
+    /// The indices of circular edges, whole or not: one of each set that is equivalent by symmetry.
     pub circles: Vec<usize>,
     /// The chains of straight edges with one edge, and with two, between their corners: one of each
-    /// kind that symmetries bring onto each other.
+    /// set that is equivalent by symmetry.
     pub chains: [Vec<EdgePath>; 2],
     views: VisibilityCache,
 }
@@ -52,14 +52,14 @@ pub struct SoughtPart<'a> {
 /// A chain of three or four straight edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgePath {
-    /// The strokes: that which leaves A, those from A to B, that which leaves B.
+    /// The indices of its edges: the one that leaves A, those from A to B, the one that leaves B.
     pub strokes: Vec<usize>,
-    /// Where they are.
+    /// Their geometry.
     pub lines: PartChain,
 }
 
 impl<'a> SoughtPart<'a> {
-    /// A part with a boundary and a resolution, of whose features something is learned.
+    /// Prepares a part with a boundary, a resolution and the detectability of its features.
     pub fn new(brep: &'a Brep, resolution: f64, learned: &DetectabilityPrior) -> Self {
         let states = |edge: EdgeId| learned.states(&ArcSource::Edge { edge: edge.0 });
         let hull = bounding_box::bounds(brep);
@@ -83,17 +83,17 @@ impl<'a> SoughtPart<'a> {
         }
     }
 
-    /// Whether anything of the part proposes poses: chains of straight edges, or circles.
+    /// Whether the part can propose poses: by chains of straight edges, or circles.
     pub fn proposes(&self) -> bool {
         self.chains.iter().any(|c| !c.is_empty()) || !self.circles.is_empty()
     }
 
-    /// The turns that bring the part onto itself; the first does nothing.
+    /// The rotational symmetries of the part; the first is the identity.
     pub fn turns(&self) -> impl Iterator<Item = &Isometry3<f64>> {
         self.symmetries.iter().map(|s| &s.turn)
     }
 
-    /// The faces on both sides of a mark of an edge.
+    /// The faces on both sides of an edge at a sample.
     fn faces(&self, mark: &EdgeSample) -> [FaceId; 2] {
         let coedges = &self
             .brep
@@ -104,8 +104,8 @@ impl<'a> SoughtPart<'a> {
         [0, 1].map(|k| self.brep.topology.face_of(side(k)))
     }
 
-    /// Four points that determine where the part is: its middle, and three about it; of a part that is turned
-    /// about an axis, which may be turned by any angle, all on that.
+    /// Four probe points that determine the pose: the centre and three points around it. For a part
+    /// of revolution all lie on the axis, because the rotation about it is free.
     pub fn probes(&self) -> [Point3<f64>; 4] {
         if let Some(axis) = &self.axis {
             return [0.0, 1.0, -1.0, 0.5].map(|k| axis.point(0.0, 0.0, k * self.radius));
@@ -118,17 +118,17 @@ impl<'a> SoughtPart<'a> {
         [self.centre, x, y, z]
     }
 
-    /// What is seen of the part from about where an eye is, in the part's frame.
+    /// The cached view from the direction nearest to an eye, in the part's frame.
     pub fn view(&self, eye: &Point3<f64>) -> &PartView {
         self.views.from(self, eye)
     }
 
-    /// The same of one mark in so many as [`Self::stride`] says.
+    /// The same with only every [`Self::stride`]-th sample.
     pub fn glimpse(&self, eye: &Point3<f64>) -> &PartView {
         self.views.glimpse(self, eye)
     }
 
-    /// At a first look one mark in so many is enough.
+    /// The step between the samples that a coarse score uses.
     pub fn stride(&self) -> usize {
         match self.marks.len() {
             0..=FEW => 1,
@@ -137,12 +137,13 @@ impl<'a> SoughtPart<'a> {
     }
 }
 
-/// So many marks are all asked at a first look; of more every third, and of many about so many.
+/// Up to `FEW` samples are all evaluated in a coarse score; of more every third, and of many about
+/// `MANY`.
 const FEW: usize = 64;
 const THIRD: usize = 3;
 const MANY: usize = 256;
 
-/// The circles among strokes, one of those that symmetries bring onto each other.
+/// The circular edges, one of each set that is equivalent by symmetry.
 fn circles(brep: &Brep, strokes: &[SampledEdge], symmetries: &[Symmetry]) -> Vec<usize> {
     let round = |s: &usize| matches!(brep.curve(strokes[*s].edge), Curve::Circle(_));
     let first = |s: &usize| symmetries.iter().all(|known| known.images[*s] >= *s);
@@ -216,7 +217,7 @@ fn add(brep: &Brep, at: &[Vec<Leaving>], a: VertexId, path: &[Leaving], all: &mu
     }
 }
 
-/// One chain of each kind.
+/// One chain of each set that is equivalent by symmetry.
 fn representatives(all: &[EdgePath], symmetries: &[Symmetry], radius: f64) -> Vec<EdgePath> {
     let mut kept: Vec<EdgePath> = Vec::new();
     let near = |a: &PartChain, b: &PartChain| {

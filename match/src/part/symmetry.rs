@@ -1,7 +1,7 @@
-//! The turns that bring a part onto itself.
+//! The rotational symmetries of a part.
 //!
-//! Such a turn keeps the middle of all edges where it is, and is told by where it brings two of them. Of
-//! the two that are the most unlike all others there are the fewest places to bring them.
+//! Such a rotation fixes the centroid of all edges, and is determined by the images of two edges.
+//! The two edges with the fewest similar ones give the fewest candidates.
 
 use super::edge_samples::{EdgeSample, SampledEdge};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -13,30 +13,30 @@ use premio_kernel::geometry::surface::Surface;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-/// Places and directions are the same within this part of the part's size.
+/// The tolerance of equal points and directions, relative to the part's size.
 pub const SAME: f64 = 1.0 / (1 << 20) as f64;
-/// The same, of what several steps lead to.
+/// The tolerance of results of several steps.
 const NEAR: f64 = 64.0 * SAME;
-/// The same, of directions next to a place.
+/// The tolerance of directions at an approximate point.
 const ALONG: f64 = 16.0 * NEAR;
-/// The least distance from the middle, in the part's size, and the least sine between two directions
-/// from there, that tell a turn.
+/// The least distance from the centroid, relative to the part's size, and the least sine between
+/// two directions from there, that determine a rotation.
 const APART: f64 = 1.0 / 64.0;
 
-/// A turn that brings a part onto itself.
+/// A rotational symmetry of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Symmetry {
-    /// The turn.
+    /// The motion.
     pub turn: Isometry3<f64>,
-    /// By stroke: that which it is brought onto.
+    /// By edge: the index of its image.
     pub images: Vec<usize>,
 }
 
-/// The turns that bring all edges with their faces onto one another; the first does nothing. Of a part
-/// that is turned about an `axis` only those that bring the axis elsewhere.
+/// The rotations that map all edges with their faces onto one another; the first is the identity.
+/// For a part of revolution about `axis`, only the one that reverses the axis, if it is one.
 ///
-/// Not all are found of a part whose edges have their middles on one line without being circles about
-/// it.
+/// Some are missed for a part whose edges have their centroids on one line without being circles
+/// about it.
 pub fn symmetries(
     brep: &Brep,
     (strokes, marks): (&[SampledEdge], &[EdgeSample]),
@@ -65,7 +65,8 @@ pub fn symmetries(
     all
 }
 
-/// The axis that all edges are whole circles about, and what no edge bounds as well, if there is one.
+/// The axis of a part of revolution, if it is one: all edges are whole circles about it, and so is
+/// every face without edges.
 pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> {
     let circles = strokes.iter().map(|s| match brep.curve(s.edge) {
         Curve::Circle(circle) if s.ends.is_none() => Some(circle.frame),
@@ -77,7 +78,7 @@ pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> 
         let off = (f.origin - first.origin).cross(&first.z).norm();
         f.z.cross(&first.z).norm() < SAME && off < SAME * radius
     };
-    // What no edge bounds has its own axis, or a centre that lies on it.
+    // A face without edges has this axis, or a centre on it.
     let turned = |face: &FaceId| match brep.surface(*face) {
         Surface::Sphere(s) => {
             (s.frame.origin - first.origin).cross(&first.z).norm() < SAME * radius
@@ -91,8 +92,7 @@ pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> 
     (frames.iter().all(about) && others.iter().all(turned)).then_some(first)
 }
 
-/// What two places on both sides of an edge tell: the outward normals of its faces, and the
-/// directions into them.
+/// For both sides of an edge at a point: the outward normal of the face, and the direction into it.
 type Sides = [[Vector3<f64>; 2]; 2];
 
 /// The edges of a part.
@@ -100,13 +100,13 @@ struct Edges<'a> {
     brep: &'a Brep,
     strokes: &'a [SampledEdge],
     radius: f64,
-    /// The middle of all.
+    /// The centroid of all edges.
     middle: Point3<f64>,
-    /// By stroke: from there to its own middle.
+    /// By edge: the vector from there to its own centroid.
     to: Vec<Vector3<f64>>,
-    /// By stroke: three points, and what lies on both sides there.
+    /// By edge: three points with the directions on both sides.
     points: Vec<[(Point3<f64>, Sides); 3]>,
-    /// The faces that no stroke bounds.
+    /// The faces without sharp edges.
     others: Vec<FaceId>,
 }
 
@@ -138,7 +138,8 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Whether two strokes are alike, as far as their lengths and distances from the middle tell.
+    /// Whether two edges have equal lengths and distances from the centroid, and both or neither
+    /// have ends.
     fn alike(&self, a: usize, b: usize) -> bool {
         let [s, t] = [a, b].map(|k| &self.strokes[k]);
         let same = |x: f64, y: f64| (x - y).abs() < NEAR * self.radius;
@@ -147,7 +148,7 @@ impl<'a> Edges<'a> {
             && s.ends.is_some() == t.ends.is_some()
     }
 
-    /// Of some strokes that with the fewest like it.
+    /// The one of some edges with the fewest similar edges.
     fn rarest(&self, of: impl Iterator<Item = usize>) -> Option<usize> {
         let count = |&a: &usize| {
             let all = 0..self.strokes.len();
@@ -156,28 +157,28 @@ impl<'a> Edges<'a> {
         of.min_by_key(count)
     }
 
-    /// The turns about the middle that bring two strokes onto others like them.
+    /// The rotations about the centroid that map two edges onto similar ones.
     fn turns(&self) -> Vec<UnitQuaternion<f64>> {
         let all = 0..self.strokes.len();
         let away = |k: &usize| self.to[*k].norm() > APART * self.radius;
         let Some(a) = self.rarest(all.clone().filter(away)) else {
             return Vec::new();
         };
-        let aside = |k: &usize| {
+        let is_independent = |k: &usize| {
             let [v, w] = [a, *k].map(|k| self.to[k].normalize());
             v.cross(&w).norm() > APART
         };
-        let Some(b) = self.rarest(all.clone().filter(away).filter(aside)) else {
+        let Some(b) = self.rarest(all.clone().filter(away).filter(is_independent)) else {
             return Vec::new();
         };
         let Some(from) = frame(&self.to[a], &self.to[b]) else {
             return Vec::new();
         };
-        let apart = |a: usize, b: usize| (self.to[a] - self.to[b]).norm();
+        let distance = |a: usize, b: usize| (self.to[a] - self.to[b]).norm();
         let mut turns = Vec::new();
         for c in all.clone().filter(|&c| self.alike(a, c)) {
             for d in all.clone().filter(|&d| self.alike(b, d)) {
-                if (apart(a, b) - apart(c, d)).abs() > NEAR * self.radius {
+                if (distance(a, b) - distance(c, d)).abs() > NEAR * self.radius {
                     continue;
                 }
                 turns.extend(frame(&self.to[c], &self.to[d]).map(|to| {
@@ -189,7 +190,7 @@ impl<'a> Edges<'a> {
         turns
     }
 
-    /// By stroke that which a turn brings it onto, with its faces; none if there is none of any.
+    /// By edge: its image under a rotation, with its faces; none if any edge has no image.
     fn images(&self, turn: &Isometry3<f64>) -> Option<Vec<usize>> {
         let all = 0..self.strokes.len();
         let image = |a: usize| {
@@ -201,7 +202,7 @@ impl<'a> Edges<'a> {
         stay.then(|| all.clone().map(image).collect())?
     }
 
-    /// Whether a turn brings the surface of a face onto that of another.
+    /// Whether a rotation maps the surface of a face onto that of another.
     fn carries(&self, turn: &Isometry3<f64>, a: FaceId, b: FaceId) -> bool {
         let [s, t] = [a, b].map(|f| self.brep.surface(f));
         let same = |x: f64, y: f64| (x - y).abs() < NEAR * self.radius;
@@ -209,7 +210,7 @@ impl<'a> Edges<'a> {
         let at = |f: &Frame, g: &Frame| same(to(f, g).norm(), 0.0);
         let turned = |f: &Frame, g: &Frame| along(&(turn.rotation * f.z), &g.z);
         let parallel = |f: &Frame, g: &Frame| turned(f, g) || along(&(turn.rotation * f.z), &-g.z);
-        let held = match (s, t) {
+        let is_mapped = match (s, t) {
             (Surface::Sphere(s), Surface::Sphere(t)) => {
                 at(&s.frame, &t.frame) && same(s.radius, t.radius)
             }
@@ -224,14 +225,14 @@ impl<'a> Edges<'a> {
             (Surface::Cone(s), Surface::Cone(t)) => {
                 at(&s.frame, &t.frame) && turned(&s.frame, &t.frame) && (s.sin - t.sin).abs() < NEAR
             }
-            // A plane without an edge along which the normal jumps lies between bent faces.
+            // A plane without a sharp edge lies between curved faces.
             (Surface::Plane(_), Surface::Plane(_)) => true,
             _ => false,
         };
-        held && self.brep.sense(a) == self.brep.sense(b)
+        is_mapped && self.brep.sense(a) == self.brep.sense(b)
     }
 
-    /// Whether a turn brings a stroke with its faces onto another.
+    /// Whether a rotation maps an edge with its faces onto another.
     fn is(&self, turn: &Isometry3<f64>, a: usize, b: usize) -> bool {
         let near = |p: &Vector3<f64>, q: &Vector3<f64>| (p - q).norm() < NEAR * self.radius;
         if !near(&(turn.rotation * self.to[a]), &self.to[b]) {
@@ -251,7 +252,7 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// The faces that no stroke bounds.
+/// The faces without sharp edges.
 fn others(brep: &Brep, strokes: &[SampledEdge]) -> Vec<FaceId> {
     let bounded = strokes.iter().flat_map(|s| brep.topology.faces_of(s.edge));
     let bounded: BTreeSet<u32> = bounded.map(|f| f.0).collect();
@@ -263,7 +264,7 @@ fn along(v: &Vector3<f64>, w: &Vector3<f64>) -> bool {
     (v - w).norm() < ALONG
 }
 
-/// What lies on both sides of an edge where its curve has a parameter.
+/// The directions on both sides of an edge at a parameter of its curve.
 fn sides(brep: &Brep, edge: EdgeId, parameter: f64) -> Sides {
     let curve = brep.curve(edge);
     let (point, tangent) = (curve.point(parameter), curve.tangent(parameter));
@@ -277,7 +278,7 @@ fn sides(brep: &Brep, edge: EdgeId, parameter: f64) -> Sides {
     [side(0), side(1)]
 }
 
-/// A frame along one vector, aside of it towards another.
+/// A frame with z along one vector and x towards another.
 fn frame(v: &Vector3<f64>, w: &Vector3<f64>) -> Option<Matrix3<f64>> {
     let z = v.try_normalize(0.0)?;
     let x = (w - z * z.dot(w)).try_normalize(0.0)?;

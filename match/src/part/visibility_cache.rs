@@ -1,4 +1,4 @@
-//! What a part hides of itself, by the direction it is seen from: asked when it is needed, and kept.
+//! The self-occlusion of a part by viewing direction, computed on demand and cached.
 
 use super::SoughtPart;
 use super::edge_samples::{EdgeSample, PartView};
@@ -14,18 +14,18 @@ use premio_visibility::ray_casting::OriginIncidence;
 use premio_visibility::scene::Scene;
 use std::sync::OnceLock;
 
-/// How many directions there are.
+/// The number of directions.
 const DIRECTIONS: usize = 320;
-/// How far the eyes are from the middle of the part, in its radius.
+/// The distance of the eyes from the part's centre, in its radius.
 const DISTANCE: f64 = 6.0;
-/// How many marks a limb has.
+/// The number of samples of a limb.
 const MARKS: usize = 24;
 
 /// The views of a part.
 #[derive(Debug)]
 pub struct VisibilityCache {
     directions: Vec<Vector3<f64>>,
-    /// Of one mark in so many, and of all.
+    /// Views of a subset of the samples, and of all.
     glimpses: Vec<OnceLock<PartView>>,
     views: Vec<OnceLock<PartView>>,
 }
@@ -47,7 +47,7 @@ impl VisibilityCache {
         self.views[nearest].get_or_init(|| view(part, &self.directions[nearest], 1))
     }
 
-    /// The same of one mark in so many as the part has a [`SoughtPart::stride`]: all others are as if hidden.
+    /// The same with only every [`SoughtPart::stride`]-th sample: all others count as hidden.
     pub fn glimpse(&self, part: &SoughtPart<'_>, eye: &Point3<f64>) -> &PartView {
         let nearest = self.nearest(part, eye);
         self.glimpses[nearest].get_or_init(|| view(part, &self.directions[nearest], part.stride()))
@@ -66,10 +66,11 @@ impl VisibilityCache {
     }
 }
 
-/// The view of one mark in so many from a direction; where there is none, nothing is hidden.
+/// The view of every `stride`-th sample from a direction; where there is no view, nothing is
+/// hidden.
 ///
-/// It is asked at marks alone, and needs no junctions of contours, which most of the time of a whole
-/// view goes to.
+/// Visibility is evaluated at samples only. It needs no junctions of contours, which take most of
+/// the time of a whole view.
 fn view(part: &SoughtPart<'_>, direction: &Vector3<f64>, stride: usize) -> PartView {
     let eye = part.centre + direction * (DISTANCE * part.radius);
     let others = (0..part.marks.len()).map(|i| i % stride != 0);
@@ -85,9 +86,9 @@ fn view(part: &SoughtPart<'_>, direction: &Vector3<f64>, stride: usize) -> PartV
     if scene.eye_inside() {
         return view;
     }
-    let asked = view.hidden.iter_mut().zip(&part.marks).step_by(stride);
-    for (hidden, mark) in asked {
-        // What the own faces hide is asked where the eye really is.
+    let subset = view.hidden.iter_mut().zip(&part.marks).step_by(stride);
+    for (hidden, mark) in subset {
+        // Occlusion by its own faces is evaluated later, at the actual eye.
         *hidden =
             mark.faces(&eye) && is_hidden(&scene, mark, part.faces(mark), OriginIncidence::Through);
     }
@@ -105,7 +106,8 @@ fn view(part: &SoughtPart<'_>, direction: &Vector3<f64>, stride: usize) -> PartV
     view
 }
 
-/// Whether anything lies before a mark on faces that a line of sight leaves so.
+/// Whether a face occludes a sample on given faces; `leaves` is the incidence of the line of sight
+/// on these.
 fn is_hidden(
     scene: &Scene<'_>,
     mark: &EdgeSample,
@@ -122,7 +124,7 @@ fn is_hidden(
     scene.is_hidden(&mark.point, &own)
 }
 
-/// The marks of a limb.
+/// The samples of a limb.
 fn limb(arc: &LimbArc, stroke: usize) -> impl Iterator<Item = EdgeSample> {
     let [from, to] = arc.range;
     (0..MARKS).map(move |k| {
@@ -206,7 +208,8 @@ mod tests {
                 );
                 hidden += usize::from(known);
             }
-            // So much of every limb's length is visible, within a mark at each end of a piece.
+            // The visible share of every limb's length agrees, within a sample at each end of a
+            // piece.
             for contour in all.iter().filter(|c| c.kind == ContourKind::Limb) {
                 let length = |p: &ContourPiece| p.t[1] - p.t[0];
                 let shown = contour.pieces.iter().filter(|p| p.visible).map(length);

@@ -1,13 +1,14 @@
-//! The pose of a circle of known radius from the conic of its image (D. Forsyth et al., PAMI 13, 1991;
-//! Q. Chen, H. Wu, T. Wada, ECCV 2004).
+//! The pose of a circle of known radius from the conic of its image (D. Forsyth et al., PAMI 13,
+//! 1991; Q. Chen, H. Wu, T. Wada, ECCV 2004).
 //!
-//! The lines of sight x of a circle with the centre C, the radius r and the normal n are the cone of
-//! |δ x − C (n·x)|² = r² (n·x)², with δ = n·C. Its matrix, divided by δ², is
-//! Q = I − c nᵀ − n cᵀ + (|c|² − ρ²) n nᵀ with c = C/δ and ρ = r/δ: the identity and the product of two
-//! planes, n mᵀ + m nᵀ with m = −c + (|c|² − ρ²)/2 n. Of the cone that the image tells but for a factor,
-//! the second eigenvalue is therefore that factor, the other eigenvectors tell the two planes, and
-//! either may be that of the circle. As n·c = 1, |c|² − ρ² = 2 (n·m + 1), c = (n·m + 1) n − m, and
-//! δ = r/ρ.
+//! Notation: C is the centre of the circle, r its radius, n its unit normal, x a line of sight, δ =
+//! n·C, c = C/δ and ρ = r/δ.
+//!
+//! The lines of sight form the cone |δ x − C (n·x)|² = r² (n·x)². Its matrix, divided by δ², is Q =
+//! I − c nᵀ − n cᵀ + (|c|² − ρ²) n nᵀ: the identity plus the product of two planes, n mᵀ + m nᵀ
+//! with m = −c + (|c|² − ρ²)/2 n. The image determines the cone up to a factor. That factor is the
+//! second eigenvalue. The other eigenvectors determine the two planes, and either may be that of
+//! the circle. As n·c = 1, |c|² − ρ² = 2 (n·m + 1), c = (n·m + 1) n − m, and δ = r/ρ.
 
 use crate::camera::Pinhole;
 use nalgebra::{
@@ -16,7 +17,7 @@ use nalgebra::{
 use premio_kernel::geometry::frame::Frame;
 use std::f64::consts::TAU;
 
-/// A circle that is seen, in the camera's frame.
+/// A visible circle, in the camera's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenCircle {
     /// Its centre, in the unit of the radius.
@@ -25,12 +26,13 @@ pub struct SeenCircle {
     pub normal: Vector3<f64>,
 }
 
-/// Eigenvalues that differ by no more than this part are the same but for rounding: the cone is round.
+/// Eigenvalues with a smaller relative difference are equal up to rounding: the cone is circular.
 const ROUND: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The circles of a radius whose image is the conic a x² + b x y + c y² + d x + e y + f = 0, x to the
-/// right and y down in pixels. The centre lies before the camera, z > 0. There are two; one where the
-/// circle is seen along the axis of its cone, and none where the conic is not that of a cone.
+/// The circles of a radius whose image is the conic a x² + b x y + c y² + d x + e y + f = 0, x to
+/// the right and y down in pixels. The centre lies in front of the camera, z > 0. There are two;
+/// one where the circle's centre is on the axis of its cone, and none where the conic is not that
+/// of a cone.
 pub fn circles(conic: &[f64; 6], camera: &Pinhole, radius: f64) -> Vec<SeenCircle> {
     let Some([first, middle, last]) = axes(conic, camera) else {
         return Vec::new();
@@ -49,14 +51,14 @@ pub fn circles(conic: &[f64; 6], camera: &Pinhole, radius: f64) -> Vec<SeenCircl
         let depth = (radius / ratio).copysign(c.z);
         let centre = Point3::from(c * depth);
         let normal = n * -1.0f64.copysign(c.z);
-        // A ratio that is no number is not greater, either.
+        // A ratio that is NaN is rejected, too.
         (ratio > 0.0 && centre.z > 0.0).then_some(SeenCircle { centre, normal })
     };
     planes[..count].iter().filter_map(circle).collect()
 }
 
-/// The eigenvalues of the cone of a conic, falling, and the eigenvectors: two of them are above zero,
-/// and one below.
+/// The eigenvalues of the cone of a conic in falling order, two positive and one negative, with
+/// their eigenvectors.
 fn axes(conic: &[f64; 6], camera: &Pinhole) -> Option<[(f64, Vector3<f64>); 3]> {
     let [a, b, c, d, e, f] = *conic;
     let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
@@ -81,10 +83,10 @@ fn axes(conic: &[f64; 6], camera: &Pinhole) -> Option<[(f64, Vector3<f64>); 3]> 
     (axes[1].0 > 0.0 && axes[2].0 < 0.0).then_some(axes)
 }
 
-/// The poses, of the part in the camera's frame, in which a circular edge of the part is a circle that
-/// is seen: first with the edge's axis along its normal, then against it, each turned about the axis
-/// by so many equal steps from a direction that is arbitrary. `edge` has its origin in the centre of
-/// the edge, in the part's frame, and z along the axis.
+/// The poses of the part in the camera's frame at which a circular edge of the part is a given
+/// circle: first with the edge's axis along the circle's normal, then against it. Each is rotated
+/// about the axis in `turns` equal steps from an arbitrary direction. `edge` has its origin in the
+/// centre of the edge, in the part's frame, and z along the axis.
 pub fn edge_poses(edge: &Frame, seen: &SeenCircle, turns: usize) -> Vec<Isometry3<f64>> {
     let from = columns(edge).transpose();
     let pose = |axis: Vector3<f64>, k: usize| {
@@ -156,7 +158,7 @@ mod tests {
         Ok(())
     }
 
-    /// A circle with a normal towards the eye, at a pose's place.
+    /// A circle with a normal towards the eye, at the position of a pose.
     fn towards(pose: &Isometry3<f64>, n: &Vector3<f64>) -> SeenCircle {
         let centre = Point3::from(pose.translation.vector);
         let normal = n * -1.0f64.copysign(n.dot(&centre.coords));
@@ -176,7 +178,8 @@ mod tests {
             check(&planted, radius, 1e-6)?;
         }
 
-        /// Seen along its axis or nearly so: what rounding does to a double root is its square root.
+        /// A circle viewed along its axis or nearly so. Rounding changes a double root by the
+        /// square root of its size.
         #[test]
         fn a_circle_from_above_is_found(
             n in direction(),

@@ -1,34 +1,35 @@
-//! Three equations in three unknowns: how what is proposed is drawn to a root, and which roots are one.
+//! Three equations in three unknowns: proposed starts converge to roots, and equal roots are
+//! merged.
 
 use super::polynomial::{across, descent};
 use nalgebra::{Matrix3, Vector3};
 
-/// A root is where equations miss by no more.
+/// The greatest residual of a root.
 const SOLVED: f64 = 1.0 / (1u64 << 42) as f64;
-/// Equations that are right to this are so but for rounding.
+/// A residual below this is rounding error.
 const ROUNDED: f64 = 1.0 / (1u64 << 51) as f64;
-/// By how much rounding changes what equations miss.
+/// The factor by which rounding may change a residual.
 const NOISE: f64 = 4.0;
-/// Unknowns farther apart than this are never the same.
+/// Unknowns with a greater difference than this are never the same.
 pub const DISTINCT: f64 = 1.0 / (1 << 10) as f64;
 /// Steps of Newton's method: at a double root each gains one binary digit.
 const ROUNDS: usize = 64;
 
 /// Three equations.
 pub trait Equations {
-    /// What they are to be solved for.
+    /// The type of the unknowns.
     type Unknown: Clone;
 
-    /// What is to be zero, and its derivatives by a step.
+    /// The values that are to be zero, and their derivatives by a step.
     fn value(&self, at: &Self::Unknown) -> (Vector3<f64>, Matrix3<f64>);
 
-    /// How much they miss, in units of rounding that make [`SOLVED`] one for all.
+    /// The residual, scaled so that [`SOLVED`] applies to all equations.
     fn miss(&self, at: &Self::Unknown) -> f64;
 
-    /// What is reached by going a step back.
+    /// The unknowns after a step is subtracted.
     fn stepped(&self, at: &Self::Unknown, step: &Vector3<f64>) -> Self::Unknown;
 
-    /// What is in the middle of two that may be the same; none of two that are not.
+    /// The midpoint of two unknowns that may be the same root; none for two that are not.
     fn middle(&self, a: &Self::Unknown, b: &Self::Unknown) -> Option<Self::Unknown>;
 
     /// The root near a start, if there is one.
@@ -49,7 +50,8 @@ pub trait Equations {
         (self.miss(&at) <= SOLVED).then_some(at)
     }
 
-    /// Adds a root, if it is none of those known: between two the equations do not hold as well.
+    /// Adds a root, unless it equals a known one. Two roots are equal if the equations are
+    /// satisfied as well between them.
     fn add(&self, root: Self::Unknown, found: &mut Vec<Self::Unknown>) {
         for other in found.iter_mut() {
             let Some(middle) = self.middle(other, &root) else {
@@ -62,7 +64,7 @@ pub trait Equations {
             if between > NOISE * ends[0].max(ends[1]).max(ROUNDED) {
                 continue;
             }
-            // The middle of what rounding has split is nearest to a double root.
+            // If rounding has split a double root, the midpoint is nearest to it.
             if between <= NOISE * ends[0].min(ends[1]).max(ROUNDED) {
                 *other = middle;
             } else if ends[1] < ends[0] {

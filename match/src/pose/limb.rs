@@ -1,34 +1,39 @@
 //! Limbs in closed form: how far surfaces are from touching a plane through the eye.
 //!
-//! The plane through the eye and the tangent of a limb in the image touches the surface. In the part's
-//! frame it is n·x + d = 0 with |n| = 1. It touches a sphere where |n·c + d| = r, a cylinder where it
-//! is along the axis, n·z = 0, and |n·p + d| = r, a cone where it goes through the apex, n·a + d = 0,
-//! and |n·z| is the sine of the half angle (M. Dhome, J.-T. Lapresté, G. Rives, M. Richetin, ECCV 1990).
-//! All three are touched where two balls inside them are, one at each of two heights of the axis, which
-//! makes lengths of all that is missed. A torus is touched where |n·c + d| = |R sin θ ± r|, θ the angle
-//! of n and the axis: the balls of r are those of its spine next to the plane and farthest from it.
+//! Notation: n·x + d = 0 with |n| = 1 is the plane through the eye and the tangent of a limb's
+//! image, in the part's frame; c is a centre, p a point of an axis, z its direction, a an apex, r
+//! and R radii.
+//!
+//! The plane is tangent to the surface. It is tangent to a sphere where |n·c + d| = r. It is
+//! tangent to a cylinder where it is parallel to the axis, n·z = 0, and |n·p + d| = r. It is
+//! tangent to a cone where it contains the apex, n·a + d = 0, and |n·z| is the sine of the half
+//! angle (M. Dhome, J.-T. Lapresté, G. Rives, M. Richetin, ECCV 1990). For a cylinder and a cone
+//! this is equivalent to tangency to two inscribed balls at two heights of the axis, so that all
+//! residuals are lengths. It is tangent to a torus where |n·c + d| = |R sin θ ± r|, with θ the
+//! angle of n and the axis: it touches the ball of radius r about the nearest or the farthest point
+//! of the spine.
 
 use nalgebra::{Isometry3, Point3, Vector3, Vector6};
 use premio_kernel::geometry::surface::Surface;
 
-/// How far a plane is from touching.
+/// The distance of a plane from tangency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimbPoint {
-    /// The signed distance, in the part's unit: above zero where the plane misses what it is to touch,
-    /// below where it cuts it.
+    /// The signed distance, in the part's unit: positive where the plane does not intersect the
+    /// surface, negative where it cuts it.
     pub distance: f64,
-    /// Its derivative by the turn of the part about its origin, in radians about the camera's axes, and
-    /// by the move: the step of [`super::refine::moved`].
+    /// Its derivative by the rotation of the part about its origin, in radians about the camera's
+    /// axes, and by the translation: the step of [`super::refine::moved`].
     pub slope: Vector6<f64>,
 }
 
-/// How far a surface of a part at a pose is from touching a plane through the eye, which has a unit
-/// normal in the camera's frame: all distances are zero where the plane holds the eye and the tangent
-/// of a limb. One for a sphere and a torus, two for a cylinder and a cone: of the balls inside them at
-/// two heights of their frame's z axis, which a cone has above its apex. None for a plane, which has no
-/// limb.
+/// The distances of a surface, of a part at a pose, from tangency to a plane through the eye with a
+/// unit normal in the camera's frame. All are zero where the plane contains the eye and the tangent
+/// of a limb. There is one for a sphere and a torus, and two for a cylinder and a cone: of the
+/// inscribed balls at two heights of their frame's z axis, above the apex for a cone. There is none
+/// for a plane, which has no limb.
 ///
-/// Of a torus's two places that the plane may touch, the nearer is taken.
+/// Of a torus's two possible tangencies, the nearer one is used.
 pub fn touches(
     normal: &Vector3<f64>,
     pose: &Isometry3<f64>,
@@ -51,7 +56,7 @@ pub fn touches(
         }
         Surface::Cone(s) => {
             let levels = heights.map(|h| plane.level(&at(h)));
-            // The axis leaves the plane, on one side of it.
+            // The side of the plane on which the axis lies.
             let side = heights[0] * levels[0].distance + heights[1] * levels[1].distance;
             let touch = |i: usize| levels[i].on(side).less(heights[i] * s.sin);
             vec![touch(0), touch(1)]
@@ -76,7 +81,7 @@ struct Plane<'a> {
 }
 
 impl Plane<'_> {
-    /// The signed distance of a point of the part.
+    /// The signed distance of a point of the part from the plane.
     fn level(&self, p: &Point3<f64>) -> LimbPoint {
         let turned = self.pose.rotation * p.coords;
         let turn = turned.cross(self.normal);
@@ -86,13 +91,13 @@ impl Plane<'_> {
         }
     }
 
-    /// A length times the sine of the angle of the normal and an axis of the part.
+    /// A length times the sine of the angle between the normal and an axis of the part.
     fn across(&self, axis: &Vector3<f64>, length: f64) -> LimbPoint {
         let axis = self.pose.rotation * axis;
         let cosine = self.normal.dot(&axis);
         let cross = axis.cross(self.normal);
         let sine = cross.norm();
-        // Where the plane is square to the axis the sine is least, and has no derivative.
+        // Where the normal is along the axis, the sine is zero and has no derivative.
         let rate = if sine > 0.0 { -cosine / sine } else { 0.0 };
         LimbPoint {
             distance: length * sine,
@@ -106,7 +111,7 @@ fn stacked(turn: &Vector3<f64>, shift: &Vector3<f64>) -> Vector6<f64> {
 }
 
 impl LimbPoint {
-    /// The same, seen from the side of the plane on which something is.
+    /// The distance with the sign of a given side of the plane.
     fn on(self, side: f64) -> Self {
         let sign = 1.0f64.copysign(side);
         Self {
@@ -143,8 +148,8 @@ mod tests {
     use premio_visibility::contours::contours;
     use proptest::prelude::*;
 
-    /// Limbs of a part that `visibility` finds at a pose, each held against the plane of every tangent.
-    fn hold(description: &str, planted: &Isometry3<f64>, limbs: usize) {
+    /// Checks the limbs that `visibility` finds at a pose against the plane of every tangent.
+    fn check(description: &str, planted: &Isometry3<f64>, limbs: usize) {
         let (format, options) = (Format::Json, ReadOptions::default());
         let tree = read("limb", description.as_bytes(), format, &options)
             .unwrap()
@@ -181,7 +186,7 @@ mod tests {
 
     #[test]
     fn limbs_of_a_cylinder_touch() {
-        hold(
+        check(
             r#"{"prim": "cylinder", "r": 1.5, "h": 4}"#,
             &placed(12.0),
             2,
@@ -190,12 +195,12 @@ mod tests {
 
     #[test]
     fn limbs_of_a_cone_touch() {
-        hold(r#"{"prim": "cone", "r": 1.5, "h": 4}"#, &placed(12.0), 2);
+        check(r#"{"prim": "cone", "r": 1.5, "h": 4}"#, &placed(12.0), 2);
     }
 
     #[test]
     fn the_limb_of_a_sphere_touches() {
-        hold(r#"{"prim": "sphere", "r": 1.5}"#, &placed(9.0), 1);
+        check(r#"{"prim": "sphere", "r": 1.5}"#, &placed(9.0), 1);
     }
 
     #[test]
@@ -203,7 +208,7 @@ mod tests {
         for turn in [0.1, 0.7, 1.4] {
             let turn = nalgebra::UnitQuaternion::from_euler_angles(turn, 0.1, 0.0);
             let planted = Isometry3::from_parts(placed(12.0).translation, turn);
-            hold(r#"{"prim": "torus", "R": 2, "r": 0.75}"#, &planted, 1);
+            check(r#"{"prim": "torus", "R": 2, "r": 0.75}"#, &planted, 1);
         }
     }
 
@@ -241,7 +246,7 @@ mod tests {
                     step[i] = STEP;
                     let (a, b) = (at(&moved(&planted, &-step), &surface), at(&moved(&planted, &step), &surface));
                     for (k, touch) in here.iter().enumerate() {
-                        // Next to where the other side or place is the nearer one there is a kink.
+                        // The distance has a kink where the nearer side or tangency changes.
                         let change = (b[k].distance - a[k].distance) / (2.0 * STEP);
                         let kink = (a[k].distance + b[k].distance - 2.0 * touch.distance).abs() > 1e-9;
                         prop_assert!(kink || (change - touch.slope[i]).abs() < 1e-6);
@@ -250,9 +255,10 @@ mod tests {
             }
         }
 
-        /// A limb of a cylinder is at a distance of the radius only where the plane is along the axis.
+        /// The distance from the axis equals the radius at a limb of a cylinder only where the
+        /// plane is parallel to the axis.
         #[test]
-        fn planes_that_do_not_touch_are_told(axis in direction(), planted in pose(3.0..9.0), askew in 0.1..1.0f64) {
+        fn planes_that_are_not_tangent_are_detected(axis in direction(), planted in pose(3.0..9.0), askew in 0.1..1.0f64) {
             let frame = Frame::about(Point3::origin(), axis);
             let cylinder = Surface::Cylinder(Cylinder { frame, radius: 0.5 });
             let (centre, z) = (planted.translation.vector, planted * axis);

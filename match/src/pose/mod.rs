@@ -1,5 +1,5 @@
-//! The pose of a part in the camera's frame: minimal solvers that propose, and least squares that
-//! decide.
+//! The pose of a part in the camera's frame: minimal solvers propose poses, and least squares
+//! refines them.
 
 pub mod circle;
 mod equations;

@@ -1,17 +1,19 @@
 //! The pose from a chain of three lines: two points and a direction at each (P2P2L).
 //!
-//! The middle line runs from A to B, so its direction u lies in the plane of their lines of sight, and
-//! the distance of A and B tells their depths. About u the part can be turned by ψ. Each of the outer
-//! lines, of direction d in the part, lies in the plane through the eye that its image spans, with the
-//! normal n: n · R d = 0. With w the normal of the first plane and v = w × u, R d = c u + s (cos ψ v +
-//! sin ψ w), which gives two equations A cos ψ + B sin ψ + C = 0; what is left when ψ goes from them is
-//! an equation in the angle of u alone.
+//! Notation: A and B are the corners of the chain, u the direction of its middle line from A to B
+//! in the camera's frame, d the direction of an outer line in the part, R the rotation of the part,
+//! and n the unit normal of the plane through the eye and the image of an outer line.
+//!
+//! u lies in the plane of the lines of sight of A and B; let w be the normal of that plane and v =
+//! w × u. The distance of A and B gives their depths. About u the part can be rotated by an angle
+//! ψ. Each outer line satisfies n · R d = 0 with R d = c u + s (cos ψ v + sin ψ w). That gives two
+//! equations A cos ψ + B sin ψ + C = 0. Eliminating ψ leaves one equation in the angle of u.
 
 use crate::part::PartChain;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// The same in an image, made ready to be solved for many parts' chains.
+/// A chain of three lines in an image, prepared to be solved for many chains of the part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageChain {
     /// The lines of sight of A and B, of length one, in the camera's frame.
@@ -22,26 +24,29 @@ pub struct ImageChain {
     plane: [Vector3<f64>; 3],
     /// The unit normals of the planes of the outer lines.
     normals: [Vector3<f64>; 2],
-    /// By outer line: its normal along the axes of the plane.
+    /// By outer line: the components of its normal along the axes of the plane.
     along: [[f64; 3]; 2],
-    /// The directions of the middle line that are tried: their angles, cosines and sines.
+    /// The sampled directions of the middle line: their angles, cosines and sines.
     steps: Vec<[f64; 3]>,
 }
 
-/// How many directions of the middle line are tried before roots are sought between them.
+/// The number of sampled directions of the middle line, between which roots are bracketed.
 const STEPS: usize = 48;
-/// How often an interval with a root is cut by secants.
+/// The most steps of the secant method in an interval.
 const ROUNDS: usize = 40;
-/// Foreshortening beyond this, in radians, tells no depth.
+/// The least angle, in radians, between the middle line and a line of sight. Smaller angles do not
+/// determine the depth.
 const STEEPEST: f64 = 1.0 / 32.0;
-/// An angle is found to this.
+/// The accuracy of an angle, in radians.
 const FINE: f64 = 1.0 / (1 << 20) as f64;
-/// Directions are across the middle line below this cosine: the equations are then of lower degree.
+/// An outer line is perpendicular to the middle line below this cosine. The equations then have a
+/// lower degree.
 const SQUARE: f64 = 1.0 / 1024.0;
 
 impl ImageChain {
-    /// The chain whose A and B are seen along rays, and its outer lines at them and along further
-    /// rays, on the side to which the lines leave; all of length one. None where these tell no planes.
+    /// The chain with the lines of sight of A and B, and two further lines of sight of points on
+    /// its outer lines, on the side to which these leave; all of length one. None where they do not
+    /// span planes.
     pub fn new(rays: [Vector3<f64>; 2], beyond: [Vector3<f64>; 2]) -> Option<Self> {
         let across = rays[0].cross(&rays[1]);
         let between = across.norm().atan2(rays[0].dot(&rays[1]));
@@ -49,7 +54,7 @@ impl ImageChain {
         let plane = [rays[0], w.cross(&rays[0]), w];
         let normal = |i: usize| rays[i].cross(&beyond[i]).try_normalize(0.0);
         let normals = [normal(0)?, normal(1)?];
-        // A and B lie before the eye between these angles.
+        // A and B lie in front of the camera between these angles.
         let [from, to] = [between + STEEPEST, PI - STEEPEST];
         let step = |k: usize| {
             let angle = from + (to - from) * k as f64 / STEPS as f64;
@@ -69,12 +74,13 @@ impl ImageChain {
 /// The equations of a part's chain and an image's.
 struct Equations<'a> {
     image: &'a ImageChain,
-    /// By outer line: its direction along A to B, and across it along two axes.
+    /// By outer line: the components of its direction along A to B, and along two axes
+    /// perpendicular to that.
     parts: [[f64; 3]; 2],
-    /// Whether both are across: the equations have no C.
+    /// Whether both are perpendicular: the equations have no C.
     square: bool,
     length: f64,
-    /// The axes across A to B, and that direction, as columns.
+    /// The axes perpendicular to A to B, and that direction, as columns.
     frame: Matrix3<f64>,
 }
 
@@ -97,7 +103,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// A, B, C of both, where the middle line has a cosine and a sine.
+    /// A, B, C of both equations for a cosine and a sine of the middle line's angle.
     fn coefficients(&self, cos: f64, sin: f64) -> [[f64; 3]; 2] {
         [self.of_line(0, cos, sin), self.of_line(1, cos, sin)]
     }
@@ -109,7 +115,7 @@ impl<'a> Equations<'a> {
         [x * nv + y * nw, x * nw - y * nv, c * nu]
     }
 
-    /// What is zero at the angles that are meant.
+    /// The resultant, which is zero at the angles of solutions.
     fn value(&self, cos: f64, sin: f64) -> f64 {
         let [[a, b, c], [a1, b1, c1]] = self.coefficients(cos, sin);
         let det = a * b1 - a1 * b;
@@ -124,7 +130,8 @@ impl<'a> Equations<'a> {
         self.value(angle.cos(), angle.sin())
     }
 
-    /// The poses at an angle of the middle line, of which the lines leave their points the right way.
+    /// Adds the poses at an angle of the middle line whose outer lines leave their points in the
+    /// right direction.
     fn poses(&self, part: &PartChain, angle: f64, found: &mut Vec<Isometry3<f64>>) {
         let (cos, sin) = (angle.cos(), angle.sin());
         let [[a, b, c], [a1, b1, c1]] = self.coefficients(cos, sin);
@@ -179,8 +186,8 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The poses, of the part in the camera's frame, in which a chain of a part has the image of another:
-/// all roots, up to eight.
+/// The poses of the part in the camera's frame at which its chain has the image of a given chain:
+/// all solutions, up to eight.
 pub fn poses(part: &PartChain, image: &ImageChain) -> Vec<Isometry3<f64>> {
     let mut found = Vec::new();
     let Some(equations) = Equations::new(part, image) else {
@@ -195,7 +202,7 @@ pub fn poses(part: &PartChain, image: &ImageChain) -> Vec<Isometry3<f64>> {
             let angle = root(&equations, [a, b], [values[k], values[k + 1]]);
             equations.poses(part, angle, &mut found);
         } else if k > 0 && touches(&values[k - 1..=k + 1]) {
-            // Two roots that are near, or one that is double: the extremum between three values.
+            // Two nearby roots or a double one: the extremum of the parabola through three values.
             let [l, m, r] = [values[k - 1], values[k], values[k + 1]];
             let angle = a + (b - a) * 0.5 * (l - r) / (l - 2.0 * m + r);
             equations.poses(part, angle, &mut found);
@@ -204,7 +211,7 @@ pub fn poses(part: &PartChain, image: &ImageChain) -> Vec<Isometry3<f64>> {
     found
 }
 
-/// Whether the parabola through three values of one sign comes near zero between them.
+/// Whether the parabola through three values of one sign nearly reaches zero between them.
 fn touches(values: &[f64]) -> bool {
     let [l, m, r] = [values[0], values[1], values[2]];
     let bend = l - 2.0 * m + r;

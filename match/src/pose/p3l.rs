@@ -1,12 +1,16 @@
-//! The pose from three lines and the planes through the eye in which they are seen (P3L).
+//! The pose from three lines and the planes through the eye and their images (P3L).
 //!
-//! A plane with the normal n holds the line of a point p and a direction d where n · R d = 0 and
-//! n · (R p + t) = 0: the first three equations tell the rotation, the others then the translation
-//! (M. Dhome, M. Richetin, J.-T. Lapresté, G. Rives, PAMI 11, 1989; H. Chen, PAMI 13, 1991). The first
-//! direction becomes u, in its plane at the angle α, and about u the part is turned by ψ. With w the
-//! normal of that plane and v = w × u, the two other equations are A cos ψ + B sin ψ + C = 0, with A, B
-//! and C of degree one in cos α and sin α; what is left without ψ, in tan α/2, is of degree eight. Its
-//! roots only propose: rotations are drawn to the three equations by Newton's method, which decide.
+//! Notation: n is the unit normal of a plane through the eye, p a point of a line of the part, d
+//! its direction, R and t the rotation and translation of the part.
+//!
+//! The plane contains the line where n · R d = 0 and n · (R p + t) = 0. The first three equations
+//! determine the rotation, and the others then the translation (M. Dhome, M. Richetin, J.-T.
+//! Lapresté, G. Rives, PAMI 11, 1989; H. Chen, PAMI 13, 1991). R maps the first direction to u, at
+//! the angle α in its plane, and the part is rotated about u by ψ. With w the normal of that plane
+//! and v = w × u, the two other equations are A cos ψ + B sin ψ + C = 0, with A, B and C of degree
+//! one in cos α and sin α. Eliminating ψ leaves a polynomial of degree eight in tan α/2. Its roots
+//! are only starts: Newton's method refines each on the three equations, which decide whether it is
+//! a solution.
 
 use super::equations::{DISTINCT, Equations as Solved};
 use super::polynomial::proposals;
@@ -22,18 +26,20 @@ pub struct PartLine {
     pub direction: Vector3<f64>,
 }
 
-/// Planes whose normals span less meet in one line, but for rounding.
+/// If the determinant of the planes' normals is smaller than this, the planes intersect in one line
+/// up to rounding.
 const FLAT: f64 = 1.0 / (1 << 20) as f64;
-/// A polynomial is zero everywhere where no coefficient is greater.
+/// A polynomial is identically zero if no coefficient is greater than this.
 const NOTHING: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The poses, of the part in the camera's frame, in which three lines of the part lie in three planes
-/// through the eye with unit normals, in the camera's frame: all roots, up to eight, a double one once.
-/// No point of a line is asked to lie before the eye.
+/// The poses of the part in the camera's frame at which its three lines lie in three planes through
+/// the eye: all solutions, up to eight, a double one once. The unit normals are in the camera's
+/// frame. The lines need not lie in front of the camera.
 ///
-/// None where the planes meet in a line through the eye, as they do for three lines that meet in a
-/// point: the distance is then not told, though [`rotations`] are. None, either, where the rotation is
-/// not told: for three parallel lines, and for two parallel ones in the same plane.
+/// None where the planes intersect in a line through the eye, as for three lines with a common
+/// point: the distance is then not determined, though [`rotations`] are. None, either, where the
+/// rotation is not determined: for three parallel lines, and for two parallel ones in the same
+/// plane.
 pub fn poses(lines: &[PartLine; 3], normals: &[Vector3<f64>; 3]) -> Vec<Isometry3<f64>> {
     let planes = Matrix3::from_rows(&normals.map(|n| n.transpose()));
     if planes.determinant().abs() < FLAT {
@@ -49,9 +55,9 @@ pub fn poses(lines: &[PartLine; 3], normals: &[Vector3<f64>; 3]) -> Vec<Isometry
     all.filter_map(pose).collect()
 }
 
-/// The rotations, of the part into the camera's frame, that bring three directions into three planes;
-/// all vectors are of length one. All roots, up to eight, a double one once; none where rotations do so
-/// that are not apart from each other.
+/// The rotations of the part into the camera's frame that map three directions into three planes;
+/// all vectors are of length one. All solutions, up to eight, a double one once; none where the
+/// solutions are not isolated.
 pub fn rotations(
     directions: &[Vector3<f64>; 3],
     normals: &[Vector3<f64>; 3],
@@ -76,11 +82,12 @@ struct Equations {
 }
 
 impl Equations {
-    /// Rotations that may solve the equations.
+    /// Candidate rotations.
     fn proposals(&self) -> Vec<UnitQuaternion<f64>> {
         let angles = Angles::new(self);
         let mut found = Vec::new();
-        // tan α/2 is small on one half of the circle, and on the other that of α - π.
+        // tan α/2 is at most one in magnitude on one half of the circle, and tan (α − π)/2 on the
+        // other.
         for half in [1.0, -1.0] {
             let k = angles.polynomial(half);
             if k.iter().all(|c| c.abs() < NOTHING) {
@@ -94,7 +101,7 @@ impl Equations {
         found
     }
 
-    /// Whether the equations hold for further turns about an axis, too.
+    /// Whether the equations also hold for further rotations about an axis.
     fn is_free(&self, rotation: &UnitQuaternion<f64>) -> bool {
         let (_, slope) = self.value(rotation);
         if slope.determinant().abs() > FLAT {
@@ -115,7 +122,8 @@ impl Equations {
 impl Solved for Equations {
     type Unknown = UnitQuaternion<f64>;
 
-    /// The cosines that are to be zero, and their derivatives by a turn in the camera's axes.
+    /// The cosines that are to be zero, and their derivatives by a rotation about the camera's
+    /// axes.
     fn value(&self, rotation: &UnitQuaternion<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let turned = self.directions.map(|d| rotation * d);
         let value = [0, 1, 2].map(|i| self.normals[i].dot(&turned[i]));
@@ -140,8 +148,7 @@ impl Solved for Equations {
     }
 }
 
-/// The rotation in the middle of two that are near. An interpolation by angles loses the digits of
-/// small ones.
+/// The midpoint of two nearby rotations. An interpolation by angles loses the digits of small ones.
 fn middle(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     let (a, b) = (a.into_inner(), b.into_inner());
     let sign = 1.0f64.copysign(a.dot(&b));
@@ -152,13 +159,15 @@ fn middle(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> UnitQuaternion<f6
 struct Angles {
     /// The axes of the plane of the first line, and its normal.
     plane: Frame,
-    /// The axes across the first direction, and that direction.
+    /// The axes perpendicular to the first direction, and that direction.
     part: Frame,
-    /// By other line: its direction along those axes of the part, and its normal along the plane's.
+    /// By other line: the components of its direction along these axes of the part, and of its
+    /// normal along the axes of the plane.
     others: [[Vector3<f64>; 2]; 2],
 }
 
-/// A cos ψ + B sin ψ + C: each as constant, and by cos α and sin α.
+/// The coefficients A, B, C of A cos ψ + B sin ψ + C, each as a constant and its factors of cos α
+/// and sin α.
 type Terms = [[f64; 3]; 3];
 
 impl Angles {
@@ -187,8 +196,8 @@ impl Angles {
         ]
     }
 
-    /// What is left of both equations without ψ, times (1 + t²)⁴ with t = tan α/2; on the other half
-    /// of the circle t = tan (α − π)/2.
+    /// The resultant of both equations without ψ, times (1 + t²)⁴ with t = tan α/2; on the other
+    /// half of the circle t = tan (α − π)/2.
     fn polynomial(&self, half: f64) -> [f64; 9] {
         let by_tangent = |[k, c, s]: [f64; 3]| {
             let (c, s) = (half * c, half * s);
@@ -208,16 +217,16 @@ impl Angles {
         k
     }
 
-    /// The rotations at an α: by the equation that tells ψ better.
+    /// The rotations at an α, from the equation that determines ψ better.
     fn rotations(&self, cos: f64, sin: f64) -> [UnitQuaternion<f64>; 2] {
         let at = |[k, c, s]: [f64; 3]| k + c * cos + s * sin;
         let [first, second] = [0, 1].map(|i| self.terms(i).map(at));
-        let reach = |[a, b, _]: &[f64; 3]| a.hypot(*b);
-        let better = reach(&first) >= reach(&second);
+        let amplitude = |[a, b, _]: &[f64; 3]| a.hypot(*b);
+        let better = amplitude(&first) >= amplitude(&second);
         let [a, b, c] = if better { first } else { second };
         let middle = b.atan2(a);
-        let aside = (-c / a.hypot(b)).clamp(-1.0, 1.0).acos();
-        [middle - aside, middle + aside].map(|psi| self.rotation([cos, sin], psi))
+        let half_angle = (-c / a.hypot(b)).clamp(-1.0, 1.0).acos();
+        [middle - half_angle, middle + half_angle].map(|psi| self.rotation([cos, sin], psi))
     }
 
     fn rotation(&self, [cos, sin]: [f64; 2], psi: f64) -> UnitQuaternion<f64> {
@@ -257,7 +266,7 @@ mod tests {
         PartLine { point, direction }
     }
 
-    /// The planes through the eye of lines that are seen in a planted pose.
+    /// The planes through the eye and the lines at a planted pose.
     fn planes(lines: &[PartLine; 3], planted: &Isometry3<f64>) -> [Vector3<f64>; 3] {
         lines.map(|l| {
             let at = (planted * l.point).coords;
@@ -265,15 +274,17 @@ mod tests {
         })
     }
 
-    /// How well a pose is told: by normals, and by the turns that move directions out of planes.
-    fn told(lines: &[PartLine; 3], planted: &Isometry3<f64>) -> f64 {
+    /// How well a pose is determined: by the normals, and by the rotations that move directions out
+    /// of the planes.
+    fn determinacy(lines: &[PartLine; 3], planted: &Isometry3<f64>) -> f64 {
         let normals = planes(lines, planted);
         let turns = [0, 1, 2].map(|i| (planted * lines[i].direction).cross(&normals[i]));
         let of = |rows: [Vector3<f64>; 3]| rows[0].cross(&rows[1]).dot(&rows[2]).abs();
         of(normals).min(of(turns))
     }
 
-    /// How far the nearest pose found is from the planted one; each is held against the planes.
+    /// The distance of the nearest pose found from the planted one. Each pose is checked against
+    /// the planes.
     fn nearest(lines: &[PartLine; 3], planted: &Isometry3<f64>) -> f64 {
         let normals = planes(lines, planted);
         let found = poses(lines, &normals);
@@ -304,7 +315,7 @@ mod tests {
 
         #[test]
         fn a_planted_pose_is_found(lines in [any(), any(), any()], planted in pose(3.0..10.0)) {
-            prop_assume!(told(&lines, &planted) > 1e-4);
+            prop_assume!(determinacy(&lines, &planted) > 1e-4);
             prop_assert!(nearest(&lines, &planted) < 1e-6);
         }
 
@@ -319,7 +330,7 @@ mod tests {
             let mut lines = [0, 1, 2].map(|i| line(p[i], d[i]));
             let next = NEXT[which];
             lines[next].direction = (d[which] + d[next] * off).normalize();
-            prop_assume!(told(&lines, &planted) > 1e-4);
+            prop_assume!(determinacy(&lines, &planted) > 1e-4);
             prop_assert!(nearest(&lines, &planted) < 1e-6);
         }
 
@@ -334,11 +345,11 @@ mod tests {
         ) {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let lines = [0, 1, 2].map(|i| line(p[i], (axes[kinds[i]] + d[i] * off).normalize()));
-            prop_assume!(told(&lines, &planted) > 1e-4);
+            prop_assume!(determinacy(&lines, &planted) > 1e-4);
             prop_assert!(nearest(&lines, &planted) < 1e-6);
         }
 
-        /// Two of the lines meet.
+        /// Two of the lines intersect.
         #[test]
         fn a_corner_and_a_line_are_found(
             p in [point(), point()],
@@ -346,13 +357,13 @@ mod tests {
             planted in pose(3.0..10.0),
         ) {
             let lines = [line(p[0], d[0]), line(p[0], d[1]), line(p[1], d[2])];
-            prop_assume!(told(&lines, &planted) > 1e-4);
+            prop_assume!(determinacy(&lines, &planted) > 1e-4);
             prop_assert!(nearest(&lines, &planted) < 1e-6);
         }
 
-        /// Where three lines meet only their rotation is told.
+        /// Where three lines have a common point, only the rotation is determined.
         #[test]
-        fn a_corner_tells_its_rotation(
+        fn a_corner_determines_its_rotation(
             p in point(),
             d in [direction(), direction(), direction()],
             square: bool,
@@ -370,7 +381,7 @@ mod tests {
         }
 
         #[test]
-        fn parallel_lines_tell_no_pose(
+        fn parallel_lines_determine_no_pose(
             p in [point(), point(), point()],
             d in [direction(), direction()],
             planted in pose(3.0..10.0),
@@ -385,7 +396,7 @@ mod tests {
             prop_assert!(rotations(&lines.map(|l| l.direction), &normals).is_empty());
         }
 
-        /// A turn is chosen that moves no direction out of its plane: a root that is double.
+        /// A rotation is chosen that moves no direction out of its plane: a double root.
         #[test]
         fn a_double_root_is_given_once(
             d in [direction(), direction(), direction()],
@@ -393,7 +404,7 @@ mod tests {
             planted in pose(3.0..10.0),
         ) {
             let turned = d.map(|d| planted * d);
-            // n across t, and t × n across the axis.
+            // n is perpendicular to t, and t × n to the axis.
             let normals = turned.map(|t| t.cross(&axis.cross(&t)).normalize());
             let rows = [0, 1, 2].map(|i| turned[i].cross(&normals[i]));
             prop_assert!(rows.iter().all(|r| r.dot(&axis).abs() < 1e-12));

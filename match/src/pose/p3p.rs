@@ -1,12 +1,12 @@
 //! The pose from three points and their lines of sight (P3P).
 //!
 //! The points lie at the depths λ along the unit rays y, and their distances are those in the part:
-//! |λᵢ yᵢ − λⱼ yⱼ|² = aᵢⱼ, three quadratic forms in λ (Grunert 1841). Two combinations without constant
-//! are cones through the depths sought. As in Lambda Twist (M. Persson, K. Nordberg, ECCV 2018, section
-//! 3), one cone of their pencil is a pair of planes, told by a root of a cubic, and each plane meets
-//! another cone of the pencil in up to two lines. Here the cubic is homogeneous in the pencil, so no
-//! cone of it is singled out, and every depth is drawn to the three equations by Newton's method, which
-//! decide whether it is a solution.
+//! |λᵢ yᵢ − λⱼ yⱼ|² = aᵢⱼ, three quadratic forms in λ (Grunert 1841). Two combinations without a
+//! constant term are cones through the solutions. As in Lambda Twist (M. Persson, K. Nordberg, ECCV
+//! 2018, section 3), a root of a cubic gives a cone of their pencil that is a pair of planes. Each
+//! plane intersects another cone of the pencil in up to two lines. Here the cubic is homogeneous in
+//! the pencil, so it treats all its cones alike. Newton's method refines each proposal on the three
+//! equations, which decide whether it is a solution.
 
 use super::equations::{DISTINCT, Equations as Solved};
 use super::polynomial::crossings;
@@ -15,14 +15,15 @@ use nalgebra::{
 };
 use premio_kernel::geometry::frame::perpendicular;
 
-/// Points as near to a line as this part of their distances tell no turn about it.
+/// Points are collinear if twice the area of their triangle is at most this share of the longest
+/// squared distance. They then do not determine the rotation about their line.
 const FLAT: f64 = 1.0 / (1 << 20) as f64;
 /// A discriminant that is negative by no more than this part may be zero.
 const SLACK: f64 = 1.0 / (1 << 10) as f64;
 
-/// The poses, of the part in the camera's frame, in which three points of the part lie before the eye
-/// on three rays of length one: all roots, up to four, a double one once. None where the points lie on
-/// a line or rays coincide.
+/// The poses of the part in the camera's frame at which three points of the part lie in front of
+/// the camera on three rays of length one: all solutions, up to four, a double one once. None where
+/// the points are collinear or rays coincide.
 pub fn poses(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Vec<Isometry3<f64>> {
     let Some(equations) = Equations::new(points, rays) else {
         return Vec::new();
@@ -38,7 +39,8 @@ pub fn poses(points: &[Point3<f64>; 3], rays: &[Vector3<f64>; 3]) -> Vec<Isometr
     found.iter().filter_map(pose).collect()
 }
 
-/// The equations of the depths, one for each side of the triangle: k is that from point k to the next.
+/// The equations of the depths, one for each side of the triangle: k is that from point k to the
+/// next.
 struct Equations {
     rays: [Vector3<f64>; 3],
     /// The squared distances a.
@@ -56,9 +58,9 @@ impl Equations {
         let squares = sides.map(|s| s.norm_squared());
         let longest = squares.iter().fold(0.0, |a: f64, b| a.max(*b));
         let spread = sides[0].cross(&sides[1]).norm() > FLAT * longest;
-        let apart = (0..3).all(|k| rays[k].cross(&rays[NEXT[k]]).norm() > 0.0);
+        let distinct = (0..3).all(|k| rays[k].cross(&rays[NEXT[k]]).norm() > 0.0);
         let shortest = squares.iter().fold(longest, |a, b| a.min(*b)).sqrt();
-        (spread && apart).then_some(Self {
+        (spread && distinct).then_some(Self {
             rays: *rays,
             squares,
             shortest,
@@ -77,7 +79,7 @@ impl Equations {
         form
     }
 
-    /// Depths that may solve the equations.
+    /// Candidate depths.
     fn proposals(&self) -> Vec<Vector3<f64>> {
         let forms = [0, 1, 2].map(|k| self.form(k));
         let [a, b, c] = self.squares;
@@ -89,7 +91,7 @@ impl Equations {
         let whole = a + b + c;
         let mut found = Vec::new();
         for plane in &pair.planes {
-            for depths in met(&pair.other, plane) {
+            for depths in plane_section(&pair.other, plane) {
                 let depths = if depths.sum() < 0.0 { -depths } else { depths };
                 let square = depths.dot(&(sum * depths));
                 if depths.min() > 0.0 && square > 0.0 {
@@ -104,14 +106,13 @@ impl Equations {
 impl Solved for Equations {
     type Unknown = Vector3<f64>;
 
-    /// The sides by which depths miss the equations, as parts of the squared distances, and their
-    /// derivatives.
+    /// The relative errors of the squared side lengths, and their derivatives by the depths.
     fn value(&self, depths: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let mut value = Vector3::zeros();
         let mut slope = Matrix3::zeros();
         for (k, square) in self.squares.iter().enumerate() {
             let (i, j) = (k, NEXT[k]);
-            // The difference of points, and not the form, which loses digits of a far part.
+            // The difference of the points: the quadratic form loses digits for a distant part.
             let side = self.rays[i] * depths[i] - self.rays[j] * depths[j];
             value[k] = side.norm_squared() / square - 1.0;
             slope[(k, i)] = 2.0 * self.rays[i].dot(&side) / square;
@@ -120,7 +121,7 @@ impl Solved for Equations {
         (value, slope)
     }
 
-    /// How much the equations miss, in units of the rounding for a far part.
+    /// The residual, in units of the rounding error for a distant part.
     fn miss(&self, depths: &Vector3<f64>) -> f64 {
         self.value(depths).0.amax() / (1.0 + depths.max() / self.shortest)
     }
@@ -142,8 +143,8 @@ struct Pair {
 }
 
 impl Pair {
-    /// The pair of planes of the pencil that are told best: the greatest product of eigenvalues of
-    /// different signs.
+    /// The best-conditioned pair of planes of the pencil: it has the greatest product of
+    /// eigenvalues of different signs.
     fn new([a, b]: &[Matrix3<f64>; 2]) -> Option<Self> {
         let mut best: Option<(f64, Self)> = None;
         for [x, y] in degenerate(a, b) {
@@ -165,9 +166,9 @@ impl Pair {
     }
 }
 
-/// The x and y, of length one, for which the determinant of x a + y b is zero.
+/// The unit vectors (x, y) for which the determinant of x a + y b is zero.
 fn degenerate(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Vec<[f64; 2]> {
-    // With one column from one, the others from the other.
+    // The sum of determinants with one column from `one` and the others from `rest`.
     let mixed = |one: &Matrix3<f64>, rest: &Matrix3<f64>| {
         let column = |i: usize| {
             let mut m = *rest;
@@ -184,8 +185,8 @@ fn degenerate(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Vec<[f64; 2]> {
     all.map(|[x, y]| [x / x.hypot(y), y / x.hypot(y)]).collect()
 }
 
-/// Vectors along which a cone meets a plane through its apex.
-fn met(cone: &Matrix3<f64>, plane: &Vector3<f64>) -> Vec<Vector3<f64>> {
+/// The unit vectors along which a cone intersects a plane through its apex.
+fn plane_section(cone: &Matrix3<f64>, plane: &Vector3<f64>) -> Vec<Vector3<f64>> {
     let Some(normal) = plane.try_normalize(0.0) else {
         return Vec::new();
     };
@@ -202,11 +203,11 @@ fn met(cone: &Matrix3<f64>, plane: &Vector3<f64>) -> Vec<Vector3<f64>> {
     [[h, a], [c, h]].into_iter().filter_map(along).collect()
 }
 
-/// The motion of three points onto three others at the same distances.
+/// The rigid motion that maps three points to three others with the same distances.
 fn moved_onto(points: &[Point3<f64>; 3], seen: &[Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
     let from = points.map(|p| p.coords);
     let length = |k: &usize| (from[NEXT[*k]] - from[*k]).norm_squared();
-    // The longest side tells directions best.
+    // The longest side determines directions best.
     let k = (0..3).max_by(|a, b| length(a).total_cmp(&length(b)))?;
     let triad = |p: &[Vector3<f64>; 3]| {
         let (o, a, b) = (p[k], p[NEXT[k]], p[NEXT[NEXT[k]]]);
@@ -228,7 +229,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The poses of points that are seen in a planted one, each held against the rays.
+    /// The poses found for points at a planted pose, each checked against the rays.
     fn found(points: &[Point3<f64>; 3], planted: &Isometry3<f64>) -> Vec<Isometry3<f64>> {
         let rays = points.map(|p| (planted * p).coords.normalize());
         let found = poses(points, &rays);
@@ -252,7 +253,8 @@ mod tests {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The least angle's sine, as a measure of how well three points tell a pose.
+    /// The conditioning of three points: twice the area of the triangle over the square of the
+    /// longest side.
     fn slimness(p: &[Point3<f64>; 3]) -> f64 {
         let s = [0, 1, 2].map(|k| p[NEXT[k]] - p[k]);
         let longest = s.iter().map(|s| s.norm_squared()).fold(0.0, f64::max);
@@ -268,8 +270,8 @@ mod tests {
             prop_assert!(nearest(&p, &planted) < 1e-6);
         }
 
-        /// Next to the cylinder through the points, across their plane, two roots fall together: what
-        /// rounding does to a double root is its square root.
+        /// Near the danger cylinder, which contains the points and is perpendicular to their plane,
+        /// two roots coincide. Rounding changes a double root by the square root of its size.
         #[test]
         fn a_pose_next_to_the_danger_cylinder_is_found(
             angles in [0.0..2.0f64, 2.2..4.2f64, 4.4..6.2f64],
@@ -316,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn points_on_a_line_tell_no_pose() {
+    fn collinear_points_determine_no_pose() {
         let p = [0.0, 1.0, 3.0].map(|x| Point3::new(x, 2.0 * x, -x));
         let planted = Isometry3::translation(0.3, -0.2, 9.0);
         assert!(found(&p, &planted).is_empty());

@@ -1,13 +1,14 @@
-//! Where equations may be zero, and how to get there.
+//! Candidate roots of polynomials, and steps towards roots of equations.
 //!
-//! For a polynomial the roots of each derivative separate those of the next lower one. What
-//! is found is only proposed: solvers draw it to the roots of their own equations, and ask these whether
-//! it is one.
+//! The roots of each derivative of a polynomial separate those of the next lower one. The
+//! candidates are only proposals: solvers refine them on their own equations, which decide whether
+//! they are roots.
 
 use nalgebra::{Matrix3, Vector3};
 use premio_kernel::number::bisection::bisect_newton;
 
-/// An extremum of no more than this part of the sum of coefficients may be a double root.
+/// An extremum is a possible double root if its magnitude is at most this share of the sum of the
+/// coefficients' magnitudes.
 const NEAR: f64 = 1.0 / (1 << 20) as f64;
 
 /// The value and the derivative; `k[i]` is the coefficient of the i-th power.
@@ -22,7 +23,8 @@ fn slope(k: &[f64]) -> Vec<f64> {
     terms.map(|(i, c)| c * i as f64).collect()
 }
 
-/// Where a polynomial changes its sign between two ends; `k[i]` is the coefficient of the i-th power.
+/// Where a polynomial changes its sign between two ends; `k[i]` is the coefficient of the i-th
+/// power.
 pub fn crossings(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     if k.len() < 2 {
         return Vec::new();
@@ -30,7 +32,7 @@ pub fn crossings(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     between(k, ends, &crossings(&slope(k), ends))
 }
 
-/// Where it does so, its extrema being known.
+/// The sign changes between known extrema.
 fn between(k: &[f64], [lo, hi]: [f64; 2], extrema: &[f64]) -> Vec<f64> {
     let mut found = Vec::new();
     let (mut a, mut va) = (lo, value(k, lo).0);
@@ -44,8 +46,8 @@ fn between(k: &[f64], [lo, hi]: [f64; 2], extrema: &[f64]) -> Vec<f64> {
     found
 }
 
-/// The roots of a polynomial, `k[i]` the coefficient of the i-th power, between two ends; besides,
-/// ends and extrema at which it is next to zero.
+/// The candidate roots of a polynomial between two ends, `k[i]` the coefficient of the i-th power:
+/// its sign changes, and the ends and extrema at which it is nearly zero.
 pub fn proposals(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     let extrema = crossings(&slope(k), ends);
     let mut found = between(k, ends, &extrema);
@@ -55,13 +57,14 @@ pub fn proposals(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     found
 }
 
-/// What Levenberg's method adds to the normal equations, as a part of their trace, when it is begun.
+/// The initial damping of Levenberg's method, relative to the trace of the normal equations.
 const DAMPING: f64 = 1.0 / (1u64 << 52) as f64;
-/// By how much it adds more from step to step.
+/// The factor by which the damping grows from step to step.
 const MORE: f64 = 16.0;
 
-/// The step from a zero of three equations: Newton's where `damping` is none; where that has led to
-/// greater values, Levenberg's, shorter each time it is asked; none where that is of no use any more.
+/// The step of a solver of three equations, to be subtracted. It is Newton's where `damping` is
+/// none. After a failed step it is Levenberg's, shorter at each call; none where the damping is too
+/// great to be useful.
 pub fn descent(
     slope: &Matrix3<f64>,
     value: &Vector3<f64>,
@@ -88,8 +91,8 @@ pub fn descent(
     None
 }
 
-/// The step from a zero but for where the equations are flat: from between two roots that are near,
-/// to the curve through both on which one equation is left.
+/// The damped step of nearly singular equations, to be subtracted. From between two nearby roots it
+/// leads to the curve through both, on which one equation remains.
 pub fn across(slope: &Matrix3<f64>, value: &Vector3<f64>) -> Vector3<f64> {
     damped(slope, value, NEAR).unwrap_or_default()
 }

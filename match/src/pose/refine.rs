@@ -1,35 +1,37 @@
-//! Least squares on SE(3): Levenberg-Marquardt with a robust loss over distances along normals in the
-//! image, in pixels.
+//! Least squares on SE(3): Levenberg-Marquardt with a robust loss over distances along normals in
+//! the image, in pixels.
 
 use crate::camera::Pinhole;
 use nalgebra::{Isometry3, Matrix6, Point2, Point3, UnitQuaternion, Vector2, Vector3, Vector6};
 
-/// A point of the part whose image lies off an edge by so much along a normal.
+/// A point-to-line residual: a point of the part whose image should lie on an edge, measured along
+/// a normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointToLine {
     /// The point, in the part's frame.
     pub point: Point3<f64>,
-    /// Where the edge is in the image.
+    /// The edge point in the image.
     pub target: Point2<f64>,
     /// The unit normal of the contour in the image.
     pub normal: Vector2<f64>,
-    /// How much it counts.
+    /// The weight.
     pub weight: f64,
 }
 
-/// What was refined.
+/// The result of a refinement.
 #[derive(Clone, Copy, Debug)]
 pub struct Refined {
     /// The pose.
     pub pose: Isometry3<f64>,
-    /// JᵀWJ: of the turn, in radians about the camera's axes through the part's origin, and of the
-    /// move.
+    /// The information matrix JᵀWJ: of the rotation, in radians about the camera's axes through the
+    /// part's origin, and of the translation.
     pub information: Matrix6<f64>,
     /// The weighted sum of squared distances, and the sum of weights.
     pub squares: [f64; 2],
 }
 
-/// The pose after a step: the turn of the part about its origin in the camera's axes, and the move.
+/// The pose after a step: the rotation of the part about its origin in the camera's axes, and the
+/// translation.
 pub fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
     let turn = UnitQuaternion::from_scaled_axis(step.fixed_rows::<3>(0).into_owned());
     let mut next = *pose;
@@ -38,8 +40,8 @@ pub fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
     next
 }
 
-/// The distance of a point's image from its edge along the normal, and its derivatives; none where it
-/// is not before the camera.
+/// The signed distance of a point's image from its edge along the normal, and its derivatives; none
+/// where the point is not in front of the camera.
 pub(crate) fn residual(
     camera: &Pinhole,
     pose: &Isometry3<f64>,
@@ -53,7 +55,7 @@ pub(crate) fn residual(
     let at = camera.project(&Point3::from(p));
     let n = &pull.normal;
     let off = n.dot(&(at - pull.target));
-    // d(image)/dp, against the normal.
+    // d(image)/dp, projected on the normal.
     let (fx, fy, s) = (camera.focal[0], camera.focal[1], camera.skew);
     let (x, y) = (p.x / p.z, p.y / p.z);
     let dx = n.x * fx;
@@ -63,7 +65,7 @@ pub(crate) fn residual(
     Some((off, Vector6::new(turn.x, turn.y, turn.z, g.x, g.y, g.z)))
 }
 
-/// Tukey's weight of a distance: nothing beyond the scale.
+/// Tukey's weight of a distance: zero beyond the scale.
 fn tukey(off: f64, scale: f64) -> f64 {
     let u = off / scale;
     if u.abs() >= 1.0 {
@@ -89,7 +91,7 @@ fn normal_equations(
         };
         let w = pull.weight * tukey(off, scale);
         let u2 = (off / scale).powi(2).min(1.0);
-        // Tukey's loss, (c²/6) (1 - (1 - u²)³), without the ones, in which small distances are lost.
+        // Tukey's loss, (c²/6) (1 - (1 - u²)³), expanded so that small distances keep their digits.
         sums[2] += pull.weight * scale * scale / 6.0 * u2 * (3.0 - u2 * (3.0 - u2));
         if w > 0.0 {
             h.ger(w, &j, &j, 1.0);
@@ -101,8 +103,8 @@ fn normal_equations(
     (h, g, sums)
 }
 
-/// The pose near one at which images lie nearest to their edges; `scale` is the distance in pixels
-/// from which on one counts no longer.
+/// Refines a pose so that image points lie on their edges. Distances of at least `scale`, in
+/// pixels, have no weight.
 pub fn refine(
     camera: &Pinhole,
     start: &Isometry3<f64>,
@@ -114,7 +116,8 @@ pub fn refine(
     let mut damping = DAMPING;
     let (mut h, mut g, mut sums) = normal_equations(camera, &pose, pulls, scale);
     for _ in 0..rounds {
-        // What edges tell nothing of, as the turn of a round part about its axis, stays as it is.
+        // Undetermined motions, such as the rotation of a part of revolution about its axis, stay
+        // zero.
         let floor = [0, 3].map(|i| FLOOR * (h[(i, i)] + h[(i + 1, i + 1)] + h[(i + 2, i + 2)]));
         let mut damped = h;
         for i in 0..6 {
@@ -145,9 +148,9 @@ pub fn refine(
     })
 }
 
-/// What is added to the information of a turn or move, in that of all of them.
+/// The regularisation of the rotation's and the translation's information, relative to its trace.
 const FLOOR: f64 = 1.0 / (1u64 << 36) as f64;
-/// The damping that is begun with.
+/// The initial damping.
 const DAMPING: f64 = 1.0 / 1024.0;
 
 #[cfg(test)]

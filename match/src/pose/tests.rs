@@ -1,4 +1,4 @@
-//! What the tests of solvers have in common: planted poses.
+//! Planted poses for the tests of solvers.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::camera::Pinhole;
@@ -25,13 +25,14 @@ pub fn turn() -> impl Strategy<Value = UnitQuaternion<f64>> {
         .prop_map(|(axis, angle)| UnitQuaternion::from_scaled_axis(axis * angle))
 }
 
-/// A pose of a part that is so far away, up to half that aside.
+/// A pose at a depth, with a lateral offset of up to half the depth.
 pub fn pose(depth: Range<f64>) -> impl Strategy<Value = Isometry3<f64>> {
     (turn(), depth, -0.5..0.5f64, -0.5..0.5f64)
         .prop_map(|(turn, z, x, y)| Isometry3::from_parts(Translation3::new(x * z, y * z, z), turn))
 }
 
-/// How far apart two poses are: the angle of the turn, or the move as a part of the distance.
+/// The distance of two poses: the angle of the rotation, or the translation relative to the
+/// distance, whichever is greater.
 pub fn apart(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let shift = a.translation.vector - b.translation.vector;
     let turn = a.rotation.angle_to(&b.rotation);

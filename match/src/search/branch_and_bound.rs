@@ -3,7 +3,7 @@
 use super::State;
 use super::path::Path;
 
-/// Searches the tree; no if the work ran out.
+/// Searches the tree; false if the limit is reached.
 pub fn run(state: &mut State<'_>) -> bool {
     state.effort.rounds += 1;
     let mut path = Path::new(state.terms);

@@ -1,16 +1,16 @@
-//! Choices that no best assignment has, found before the search: dead ends (Goldstein, Biophysical
+//! Dead-end elimination: removes choices that no best assignment contains (Goldstein, Biophysical
 //! Journal 66, 1335, 1994).
 //!
-//! A choice is a dead end if another choice of its feature adds more whatever the others are. Where
-//! choices are eliminated the others have fewer, so that more may follow.
+//! A choice is a dead end if another choice of its feature adds more for all choices of the other
+//! features. Each elimination leaves the other features fewer choices, so more may follow.
 
 use super::potentials::{Potentials, SearchChoice};
 use std::collections::BTreeMap;
 
-/// So many choices of a feature, those that add the most, are held against its others.
+/// The number of a feature's highest-scoring choices that are compared with its others.
 const RIVALS: usize = 3;
 
-/// Leaves the choices of a problem that are no dead ends; tells how many were.
+/// Removes the dead ends of a problem and returns their number.
 pub fn eliminate(terms: &mut Potentials) -> u64 {
     let users = users(terms);
     let mut eliminated = 0;
@@ -50,7 +50,7 @@ fn users(terms: &Potentials) -> Users {
     users
 }
 
-/// The choices of a feature that add the most by themselves and at best with others.
+/// The choices of a feature with the greatest own score plus the greatest scores of pairs.
 fn rivals(terms: &Potentials, feature: usize) -> Vec<SearchChoice> {
     let most = |own: SearchChoice| {
         let links = terms.all[feature].iter().map(|&l| {
@@ -67,8 +67,8 @@ fn rivals(terms: &Potentials, feature: usize) -> Vec<SearchChoice> {
     all.into_iter().take(RIVALS).map(|a| a.1).collect()
 }
 
-/// Whether a rival can take the place of a choice in any assignment: what it uses besides is used by no
-/// other feature.
+/// Whether a rival can replace a choice in any assignment: no other feature uses the additional
+/// pieces of the rival.
 fn is_free(
     terms: &Potentials,
     users: &Users,
@@ -77,19 +77,19 @@ fn is_free(
     rival: SearchChoice,
 ) -> bool {
     let own = terms.pieces(feature, choice);
-    let besides = terms.pieces(feature, rival).iter();
-    let mut others = besides.filter(|p| !own.contains(p)).flat_map(|p| &users[p]);
+    let pieces = terms.pieces(feature, rival).iter();
+    let mut others = pieces.filter(|p| !own.contains(p)).flat_map(|p| &users[p]);
     others.all(|&(other, c)| other == feature || !terms.live[other].contains(&c))
 }
 
-/// How much more a rival adds than a choice, whatever the others are.
+/// The least gain of a rival over a choice, for all choices of the other features.
 fn gain(terms: &Potentials, feature: usize, choice: SearchChoice, rival: SearchChoice) -> f64 {
     let own = terms.own[feature][rival] - terms.own[feature][choice];
     let pieces = terms.pieces(feature, choice);
     let links = terms.all[feature].iter().map(|&l| {
         let link = &terms.links[l];
         let neighbour = link.other(feature);
-        // Next to the choice the neighbour uses none of its pieces.
+        // Together with the choice, the neighbour uses none of its pieces.
         let others = terms.live[neighbour].iter().filter(|&&other| {
             let used = terms.pieces(neighbour, other);
             !used.iter().any(|piece| pieces.contains(piece))

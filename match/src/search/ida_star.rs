@@ -1,26 +1,26 @@
 //! Rounds of depth-first search with a falling threshold: IDA* (Korf, Artificial Intelligence 27,
 //! 1985), and the same in steps.
 //!
-//! With real scores nearly every bound is another one, so that plain IDA* opens the tree again for each;
-//! a threshold that falls in steps, each round of which is finished, is as exact.
+//! With real-valued scores nearly every bound is different, so IDA* opens the tree again for each.
+//! A threshold that falls in steps, with each round completed, is as exact.
 
 use super::State;
 use super::path::Path;
 
-/// How far the threshold falls from round to round at least: the logarithm of a probability ratio.
+/// The least decrease of the threshold per round, as a log-likelihood ratio.
 pub const STEP: f64 = 1.0;
 
-/// What became of a branch.
+/// The result of a branch.
 enum Branch {
-    /// It was searched as far as the threshold.
+    /// It was searched down to the threshold.
     Done,
-    /// It holds the answer.
+    /// It contains the solution.
     Found,
-    /// The work ran out.
+    /// The limit was reached.
     Stopped,
 }
 
-/// Searches the tree; no if the work ran out.
+/// Searches the tree; false if the limit is reached.
 pub fn run(state: &mut State<'_>, step: Option<f64>) -> bool {
     let mut threshold = Path::new(state.terms).bound();
     loop {
@@ -38,9 +38,9 @@ pub fn run(state: &mut State<'_>, step: Option<f64>) -> bool {
     }
 }
 
-/// Goes through the paths from one on whose bound is at least the threshold; `next` becomes the
-/// greatest bound below it. With `stops` the first complete path is the answer: none has a higher
-/// bound than the threshold allowed for.
+/// Extends a path by all choices whose bound is at least the threshold; `next` becomes the greatest
+/// bound below it. With `stops` the first complete path is the solution, because no path has a
+/// greater bound than the threshold.
 fn descend(
     state: &mut State<'_>,
     path: &mut Path<'_>,

@@ -1,10 +1,12 @@
-//! Correspondences by search: which feature of the part is which line of the picture, or is missed.
+//! The search for correspondences: it assigns each feature of the part to a candidate of the image,
+//! or marks it as missed.
 //!
-//! A path through the tree assigns one feature after another, in order of detectability. Its score is
-//! the logarithm of how much more likely the picture is with its assignments than if all were clutter;
-//! its bound is the score and, for each feature that is left, the best that it could add with those that
-//! are assigned and the best of those that are not: each is maximised by itself, so no completion has
-//! more. Choices that are in no best assignment are eliminated before.
+//! A path through the tree assigns one feature after another, in order of detectability. Its score
+//! is the log-likelihood ratio of its assignments against clutter. Its bound is the score plus, for
+//! each remaining feature, the greatest score that it can add. That is maximised for each feature
+//! by itself, given the assigned features, with the greatest scores of pairs of remaining ones, so
+//! no completion scores more. Choices that no best assignment contains are eliminated before the
+//! search.
 
 mod branch_and_bound;
 mod dead_end_elimination;
@@ -21,31 +23,32 @@ use potentials::Potentials;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the tree is searched.
+/// The search strategy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Strategy {
-    /// Depth-first branch and bound: a path is cut where its bound is no more than the best found.
+    /// Depth-first branch and bound: a path is pruned where its bound is no more than the best
+    /// score found.
     #[default]
     Bounded,
-    /// IDA* (Korf 1985): rounds with a threshold, which falls to the greatest bound that was cut.
+    /// IDA* (Korf 1985): rounds with a threshold, which falls to the greatest pruned bound.
     Deepening,
-    /// Rounds with a threshold that falls in steps, each finished.
+    /// Rounds with a threshold that falls in steps, each completed.
     Stepped,
 }
 
-/// What a search did.
+/// The work of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct SearchStats {
     /// Paths opened: a path with one more assignment.
     pub opened: u64,
-    /// Of them, those that were cut at once by their bound.
+    /// Of them, those that were pruned at once by their bound.
     pub pruned: u64,
-    /// Paths that were gone on from.
+    /// Paths that were extended.
     pub nodes: u64,
     /// Rounds.
     pub rounds: u64,
-    /// Choices of features that were eliminated before the search, as none of the best.
+    /// Choices of features that were eliminated before the search.
     pub eliminated: u64,
 }
 
@@ -63,18 +66,18 @@ impl SearchStats {
 /// The best assignment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// By feature: the candidate that it is, or none if it is missed.
+    /// By feature: the assigned candidate, or none if it is missed.
     pub assignment: Assignment,
     /// Its score.
     pub score: f64,
-    /// What it took.
+    /// The work of the search.
     pub effort: SearchStats,
-    /// Whether it is known to be the best; else the work ran out.
+    /// Whether it is proven to be the best; otherwise the limit was reached.
     pub complete: bool,
 }
 
-/// The best assignment of a problem; at most so many paths are opened, and as many again where rounds
-/// end without an answer.
+/// The best assignment of a problem. At most `most` paths are opened, and as many again by branch
+/// and bound where rounds end without a result.
 pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
     let mut terms = Potentials::new(problem);
     let effort = SearchStats {
@@ -87,7 +90,7 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
         most,
         best: None,
     };
-    // Rounds that run out of work have answered nothing: branch and bound has as much again.
+    // Rounds that reach the limit have no result, so branch and bound follows with the same limit.
     let rounds = |state: &mut State<'_>, step: Option<f64>| {
         let complete = ida_star::run(state, step);
         state.most = state.most.saturating_add(most);
@@ -98,7 +101,7 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
         Strategy::Deepening => rounds(&mut state, None),
         Strategy::Stepped => rounds(&mut state, Some(ida_star::STEP)),
     };
-    // Where the work runs out before any path is complete, the most promising one tells more than none.
+    // If the limit is reached before any path is complete, the greedy path is better than none.
     let (score, assignment) = state.best.take().unwrap_or_else(|| {
         let path = Path::promising(&terms);
         (path.score(), path.assignment())
@@ -111,7 +114,7 @@ pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
     }
 }
 
-/// A search under way.
+/// The state of a search.
 struct State<'a> {
     terms: &'a Potentials,
     effort: SearchStats,
@@ -120,7 +123,7 @@ struct State<'a> {
 }
 
 impl State<'_> {
-    /// Counts a path that is opened; no if the work has run out.
+    /// Counts an opened path; false if the limit is reached.
     fn open(&mut self) -> bool {
         let can = self.effort.opened < self.most;
         self.effort.opened += u64::from(can);

@@ -11,11 +11,11 @@ pub struct Path<'a> {
     scores: Vec<f64>,
     /// By piece: whether an assignment uses it.
     used: Vec<bool>,
-    /// By link and choice of its later member: the most that it can add.
+    /// By link and choice of its later member: the greatest score of the link.
     ceilings: Vec<Vec<f64>>,
-    /// By feature that is left: the most that it can add.
+    /// By remaining feature: an upper bound of its score.
     most: Vec<f64>,
-    /// By length: what `most` was of the features that the last assignment bears on.
+    /// By length: the previous values of `most` of the features that the last assignment affects.
     before: Vec<Vec<f64>>,
 }
 
@@ -36,7 +36,7 @@ impl<'a> Path<'a> {
         path
     }
 
-    /// The complete path of the most promising choices, one after another.
+    /// The complete path of the greedy choices.
     pub fn promising(terms: &'a Potentials) -> Self {
         let mut path = Self::new(terms);
         while let Some(&choice) = path.next().first() {
@@ -60,12 +60,12 @@ impl<'a> Path<'a> {
         self.scores.last().copied().unwrap_or_default()
     }
 
-    /// What no completion has more than.
+    /// An upper bound of the score of all completions.
     pub fn bound(&self) -> f64 {
         self.score() + self.most[self.choices.len()..].iter().sum::<f64>()
     }
 
-    /// The most that a feature that is left can add.
+    /// The upper bound of a remaining feature's score.
     fn most(&self, feature: usize) -> f64 {
         let free = |c: &&SearchChoice| self.is_free(feature, **c);
         let choices = self.terms.live[feature].iter().filter(free);
@@ -73,7 +73,7 @@ impl<'a> Path<'a> {
         added.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The choices for the next feature that use no piece twice, the most promising first.
+    /// The choices for the next feature that use no piece twice, the highest-scoring first.
     pub fn next(&self) -> Vec<SearchChoice> {
         let feature = self.choices.len();
         let Some(live) = self.terms.live.get(feature) else {
@@ -91,8 +91,8 @@ impl<'a> Path<'a> {
         pieces.iter().all(|&p| !self.used[p as usize])
     }
 
-    /// What a choice adds by itself and with the features before it; with those that are not assigned,
-    /// the most that it can.
+    /// The own score of a choice and its scores with earlier features; with unassigned ones, the
+    /// greatest score.
     fn added(&self, feature: usize, choice: SearchChoice) -> f64 {
         let links = self.terms.closing[feature].iter().map(|&l| {
             let link = &self.terms.links[l];
@@ -120,7 +120,7 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Takes the last assignment back.
+    /// Removes the last assignment.
     pub fn pop(&mut self) {
         let (Some(choice), Some(before)) = (self.choices.pop(), self.before.pop()) else {
             return;

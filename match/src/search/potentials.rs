@@ -1,4 +1,4 @@
-//! A problem as a sum over its features and over pairs of them, with the choices that are left of it.
+//! The score of a problem as a sum of unary and pairwise potentials, with the remaining choices.
 
 use crate::correspondence::problem::{Candidate, Problem};
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The number of a choice of a feature: 0 if it is missed, k + 1 for its candidate k.
 pub type SearchChoice = usize;
 
-/// What two features add together, by the choices of both: their relations, and what the state of a
-/// parent does to its child.
+/// A pairwise potential: the score of two features by the choices of both. It contains their
+/// relations, and the effect of a parent's state on its child.
 pub struct PairPotential {
     /// The features; the first comes before the second.
     pub members: [usize; 2],
@@ -25,12 +25,13 @@ impl PairPotential {
         }
     }
 
-    /// What choices of both add.
+    /// The score of a pair of choices.
     pub fn score(&self, first: SearchChoice, second: SearchChoice) -> f64 {
         self.scores[first * self.columns + second]
     }
 
-    /// What they add where a feature is one of them, and the other is its neighbour.
+    /// The score of a pair of choices, where `feature` is one of the members and its neighbour the
+    /// other.
     pub fn between(&self, feature: usize, own: SearchChoice, other: SearchChoice) -> f64 {
         match self.members[0] == feature {
             true => self.score(own, other),
@@ -46,17 +47,18 @@ impl PairPotential {
 
 /// The terms of a problem's score.
 pub struct Potentials {
-    /// By feature and choice: what it adds by itself.
+    /// By feature and choice: the unary score.
     pub own: Vec<Vec<f64>>,
-    /// By pair of features.
+    /// The pairwise potentials.
     pub links: Vec<PairPotential>,
-    /// By feature: its links, and those whose later member it is.
+    /// By feature: the indices of its links, and of those whose later member it is.
     pub all: Vec<Vec<usize>>,
     /// See `all`.
     pub closing: Vec<Vec<usize>>,
-    /// By feature: the choices that are left.
+    /// By feature: the remaining choices.
     pub live: Vec<Vec<SearchChoice>>,
-    /// By feature: those after it that its choice bears on, by a link or by a piece that both can use.
+    /// By feature: the later features that its choice affects, by a link or by a piece that both
+    /// can use.
     pub others: Vec<Vec<usize>>,
     /// How many pieces there are.
     pub count: usize,
@@ -87,7 +89,7 @@ impl Potentials {
         for relation in &problem.relations {
             let link = links.entry(relation.members);
             let link = link.or_insert_with(|| PairPotential::new(problem, relation.members));
-            // Pairs of candidates that are not there are passed over.
+            // Pairs of candidates that do not exist are skipped.
             for (&(a, b), added) in relation.scores.iter().filter(|s| s.0.1 + 1 < link.columns) {
                 if let Some(score) = link.scores.get_mut((a + 1) * link.columns + b + 1) {
                     *score += added;
@@ -123,7 +125,7 @@ impl Potentials {
         choice.checked_sub(1).map_or(&[], |c| &candidates[c])
     }
 
-    /// By link and choice of its later member: the most that it can add.
+    /// By link and choice of its later member: the greatest score of the link.
     pub fn ceilings(&self) -> Vec<Vec<f64>> {
         let ceiling = |link: &PairPotential| {
             let firsts = &self.live[link.members[0]];
@@ -137,8 +139,8 @@ impl Potentials {
     }
 }
 
-/// By feature and candidate the pieces that it uses, numbered one after the other, and how many there
-/// are.
+/// By feature and candidate: the pieces that it uses, renumbered from zero; and the number of
+/// pieces.
 fn numbered(problem: &Problem) -> (Vec<Vec<Vec<u32>>>, usize) {
     let mut numbers = BTreeMap::new();
     let mut number = |piece: &u32| {

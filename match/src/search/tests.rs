@@ -1,4 +1,4 @@
-//! Searches against all assignments there are.
+//! Compares the searches with exhaustive enumeration.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::{Strategy, search};
@@ -108,7 +108,7 @@ proptest! {
 
 #[test]
 fn a_piece_is_of_one_feature() {
-    // Both want piece 7; the second has nothing else.
+    // Both can use piece 7; the second has no other candidate.
     let feature = |scores: &[(f64, u32)]| ProblemFeature {
         parent: None,
         found: [0.9f64.ln(); 2],

@@ -1,19 +1,24 @@
-//! How much of a match runs along the rows and columns of the picture, as edges of what is drawn, framed
-//! or put together of pictures do, and those of a thing before a camera only where it stands square to it.
+//! How much of a match runs along the rows and columns of the image.
+//!
+//! Edges of drawings, frames and mounted pictures do. Edges of a thing before a camera do only
+//! where it stands square to the camera.
 
 use crate::image::ImageFeatures;
 use crate::verification::part_match::FeaturePair;
 
-/// Shorter segments than this, in pixels, tell no direction.
+/// Segments shorter than this, in pixels, have no reliable direction.
 const SHORTEST: f64 = 16.0;
-/// How far off a row or a column the ends of a segment are, in pixels, or by its length.
+/// The greatest deviation of a segment from a row or a column: of its ends in pixels, or as a
+/// slope.
 const OFF: f64 = 0.75;
 const SLOPE: f64 = 1.0 / 256.0;
-/// From this share on what is found may be framed; all of it is at one. And so much runs both ways.
+/// The aligned share from which a match may be framed; at 1 it is. `EITHER` is the least share
+/// along rows and along columns.
 const SOME: f64 = 0.8;
 const EITHER: f64 = 0.1;
 
-/// From nothing to one, where all segments of what is found run along rows and columns, some along either.
+/// From 0 to 1: 1 where all segments of what is found run along rows and columns, some along
+/// either.
 pub fn framed(picture: &ImageFeatures, pairs: &[FeaturePair]) -> f64 {
     let found = pairs.iter().filter_map(|p| p.found.as_ref());
     let (mut along, mut all) = ([0.0; 2], 0.0);

@@ -1,8 +1,10 @@
-//! Verification: how much likelier a match is than chance, and what denies it.
+//! Verification: the log-likelihood ratio of a match against its alternatives, and the evidence
+//! against it.
 //!
-//! [`residuals`] separates the systematic offset of features from their random distances, [`shape_evidence`]
-//! weighs what edges determine of the part's shape, [`axis_alignment`] what runs along the image's rows and
-//! columns, and [`scoring`] adds it all to a log-likelihood ratio. [`part_match`] is the result.
+//! [`residuals`] separates the systematic offset of features from the roughness of their edges.
+//! [`shape_evidence`] evaluates how well edges determine the part's shape, and [`axis_alignment`]
+//! how much runs along the image's rows and columns. [`scoring`] adds it all to a log-likelihood
+//! ratio. [`part_match`] is the result.
 
 pub mod axis_alignment;
 pub mod part_match;

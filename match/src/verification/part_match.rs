@@ -1,4 +1,4 @@
-//! What is found in a picture: poses of the part, with their correspondences.
+//! A pose of the part with its correspondences, and the result of a search.
 
 use crate::camera::Pinhole;
 use crate::correspondence::predicted_contours::PredictedContour;
@@ -14,19 +14,20 @@ use premio_predict::image_arcs::ArcSource;
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
-/// An edge that is off a feature as a whole by more pixels than these runs next to it.
+/// A found feature with a greater systematic offset than this, in pixels, counts as missed: its
+/// edge only runs next to it.
 const ADJACENT: f64 = 2.0;
 
-/// How much work is done at the most.
+/// Limits of the work of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchLimits {
-    /// Chains of lines of each kind.
+    /// The most chains of lines of each kind.
     pub chains: usize,
-    /// Poses that are settled.
+    /// The most poses that are refined.
     pub settled: usize,
-    /// Poses for which correspondences are searched.
+    /// The most poses for which correspondences are searched.
     pub searched: usize,
-    /// Paths that are opened for one pose.
+    /// The most paths that are opened for one pose.
     pub paths: u64,
 }
 
@@ -41,95 +42,97 @@ impl Default for SearchLimits {
     }
 }
 
-/// How the part is looked for.
+/// Options of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SearchOptions {
-    /// How correspondences are searched.
+    /// The search strategy for correspondences.
     pub strategy: Strategy,
-    /// How much work is done.
+    /// The limits of the work.
     pub limits: SearchLimits,
 }
 
-/// What a feature of the part is in the picture.
+/// A feature of the part with its correspondence in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeaturePair {
     /// The feature.
     pub source: ArcSource,
-    /// Its visible length in the picture, in pixels.
+    /// Its visible length in the image, in pixels.
     pub length: f64,
-    /// What it is: nothing, if it is missed.
+    /// Its edges in the image; none if it is missed.
     pub found: Option<Found>,
-    /// What it adds to the score.
+    /// Its contribution to the score.
     pub score: f64,
-    /// Of that, what tells against the part: how unlikely it is missed, or so broken.
+    /// The part of the contribution that is evidence against the part: the log-likelihood of
+    /// missing it, or of finding it so broken.
     pub against: f64,
 }
 
 impl FeaturePair {
-    /// Whether the feature is not found, or only an edge that runs next to it.
+    /// Whether the feature is not found, or its edge has a systematic offset of more than
+    /// `ADJACENT`.
     pub(crate) fn is_missed(&self) -> bool {
         let found = self.found.as_ref();
         found.is_none_or(|f| f.systematic_offset.wholes > ADJACENT)
     }
 }
 
-/// What a found feature is.
+/// The edges of a found feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// At how many of its vertices that are seen they end, and go on.
+    /// At how many of its visible vertices the edges end, and how many they overrun.
     pub ends: [u32; 2],
-    /// The segments of the picture.
+    /// The segments of the image.
     pub segments: Vec<u32>,
     /// The covered share of the feature.
     pub share: f64,
-    /// How far next to it they run, in pixels.
+    /// The mean signed distance of the edges from it, in pixels, when they were assigned.
     pub offset: f64,
-    /// How far they are off it at the pose of the match.
+    /// Their residuals at the pose of the match.
     pub systematic_offset: SystematicOffset,
 }
 
 /// A pose with its correspondences.
 #[derive(Clone, Debug)]
 pub struct PartMatch {
-    /// The pose: of the part in the camera's frame.
+    /// The pose of the part in the camera's frame.
     pub pose: Isometry3<f64>,
-    /// The covariance of its error: turn about the camera's axes through the part's origin, in
-    /// radians, and move, in the part's unit.
+    /// The covariance of its error: rotation about the camera's axes through the part's origin, in
+    /// radians, and translation, in the part's unit.
     pub covariance: Matrix6<f64>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: f64,
-    /// How far features are off as wholes, and their edges next to that.
+    /// The systematic offset of features, and the roughness of their edges.
     pub systematic_offset: SystematicOffset,
-    /// The logarithm of how much more likely the picture is with it than if all were clutter.
+    /// The log-likelihood ratio against clutter.
     pub score: f64,
-    /// The same against clutter and other things that are like the part as far as it is found.
+    /// The log-likelihood ratio against clutter and other things that agree with what is found.
     pub ratio: f64,
-    /// The logarithm of the odds that what is found so is the part.
+    /// The prior log-odds that a thing that agrees this well is the part.
     pub odds: f64,
-    /// What is told of the part's shape.
+    /// The evidence of the part's shape.
     pub shape: ShapeEvidence,
-    /// How much of what is found runs along the picture's rows and columns, from nothing to one: all of
-    /// it, some along either.
+    /// From 0 to 1: how much of what is found runs along the image's rows and columns. It is 1 if
+    /// all of it does, some along either.
     pub framed: f64,
-    /// What the pose is fitted to: the logarithm of how many times the space of poses is larger than
+    /// The Occam factor of the pose: the logarithm of the prior volume of poses over the volume of
     /// its uncertainty.
     pub fitted: f64,
-    /// What relations tell for and against it.
+    /// The sums of the scores of relations for and against it.
     pub relations: [f64; 2],
-    /// The correspondences, in the order they were searched in.
+    /// The correspondences, in the order of the search.
     pub pairs: Vec<FeaturePair>,
-    /// What the search took.
+    /// The work of the search.
     pub effort: SearchStats,
     /// Whether the correspondences are known to be the best.
     pub complete: bool,
     /// The predicted arcs at the pose.
     pub arcs: Vec<PredictedContour>,
-    /// By correspondence: the edges that the pose is fitted to.
+    /// By correspondence: the edge points that the pose is fitted to.
     pub pulls: Vec<Vec<PointToLine>>,
 }
 
 impl PartMatch {
-    /// The share of the predicted visible length in the picture that is covered.
+    /// The share of the predicted visible length in the image that edges cover.
     pub fn share(&self) -> f64 {
         let all = self.length();
         let covered = self.pairs.iter().map(|p| {
@@ -143,7 +146,7 @@ impl PartMatch {
         }
     }
 
-    /// The part of the visible contours that lies in the picture.
+    /// The share of the visible contours that lies in the image.
     pub fn inside(&self) -> f64 {
         let all: f64 = self.arcs.iter().map(|a| a.length).sum();
         let inside: f64 = self.pairs.iter().map(|p| p.length).sum();
@@ -154,66 +157,68 @@ impl PartMatch {
         }
     }
 
-    /// What tells for the part at this pose rather than for clutter and other things, all together.
+    /// The log posterior odds of the part at this pose against clutter and other things.
     pub fn weight(&self) -> f64 {
         self.ratio + self.odds
     }
 
-    /// How much likelier it is the part than a thing that is like all of it that something is found of, and
-    /// lacks the rest: the logarithm of the odds. What is found does not tell these apart, but the more
-    /// it tells of the shape, the rarer are things that are like it.
+    /// The log-odds of the part against a thing that has all that is found of it and lacks the
+    /// rest. What is found does not distinguish these two. The more shape evidence there is, the
+    /// rarer are such things.
     fn whole(&self) -> f64 {
         PIECE[0] + self.shape.determined / PIECE[1] + self.shape.undetermined
     }
 
-    /// Whether it may as well be a piece of the part.
+    /// Whether a thing that lacks the rest of the part is likelier than the part.
     pub fn is_piece(&self) -> bool {
         self.whole() < 0.0
     }
 
-    /// How likely the part is there, rather than the likelier of both: something else, or a piece of it.
+    /// The probability of the part against the likelier alternative: another thing, or a piece of
+    /// the part.
     pub fn probability(&self) -> f64 {
         let odds = (self.weight() / REPEATED).min(self.whole());
         1.0 / (1.0 + (-odds).exp())
     }
 
-    /// Whether the part is taken to be there.
+    /// Whether the match is accepted.
     pub fn is_accepted(&self) -> bool {
         self.weight() >= 0.0 && !self.is_piece()
     }
 
-    /// Orders the likelier before the less likely, and what is accepted before what is not.
+    /// The order of matches: accepted ones first, then by falling odds.
     pub(crate) fn order(&self, other: &Self) -> Ordering {
         let accepted = other.is_accepted().cmp(&self.is_accepted());
         accepted.then(other.weight().total_cmp(&self.weight()))
     }
 
-    /// The share of the visible length in the picture that is missed, or whose edges run next to it.
+    /// The share of the visible length in the image whose features are missed, or whose edges
+    /// only run next to them.
     pub fn missed(&self) -> f64 {
         let missed = self.pairs.iter().filter(|p| p.is_missed());
         let missed: f64 = missed.map(|p| p.length).sum();
         missed / self.length().max(f64::MIN_POSITIVE)
     }
 
-    /// At how many vertices that are seen an edge goes on.
+    /// How many visible vertices edges overrun.
     pub fn past(&self) -> u32 {
         let found = self.pairs.iter().filter_map(|p| p.found.as_ref());
         found.map(|f| f.ends[1]).sum()
     }
 
-    /// The visible length in the picture, in pixels.
+    /// The visible length in the image, in pixels.
     pub fn length(&self) -> f64 {
         self.pairs.iter().map(|p| p.length).sum()
     }
 
-    /// Whether enough is found to tell the pose of a part.
+    /// Whether enough is found to determine the pose of a part.
     pub fn is_determined(&self, part: &SoughtPart<'_>) -> bool {
         let fewest = FEWEST[usize::from(part.axis.is_some())];
         let enough = self.length() >= SMALLEST && self.inside() >= INSIDE;
         self.found() >= fewest && self.fitted > DETERMINED && enough
     }
 
-    /// The correspondences whose edges are farthest off, the farthest first.
+    /// The `DOUBTED` correspondences with the greatest residuals, in falling order.
     pub(crate) fn doubted(&self, camera: &Pinhole) -> Vec<usize> {
         let off = |pull: &PointToLine| {
             let at = camera.project(&(self.pose * pull.point));
@@ -228,13 +233,13 @@ impl PartMatch {
         all.into_iter().map(|a| a.0).collect()
     }
 
-    /// The features that are found, and the segments that they are taken to be.
+    /// The features that are found, with their segments.
     pub(crate) fn taken(&self) -> impl Iterator<Item = (ArcSource, &[u32])> {
         let pairs = self.pairs.iter();
         pairs.filter_map(|p| Some((p.source, p.found.as_ref()?.segments.as_slice())))
     }
 
-    /// The share of its segments that another match takes, too.
+    /// The share of its segments that another match uses, too.
     fn overlap(&self, other: &Self) -> f64 {
         let segments = |m: &Self| -> HashSet<u32> {
             m.taken().flat_map(|(_, all)| all.iter().copied()).collect()
@@ -250,18 +255,18 @@ impl PartMatch {
     }
 }
 
-/// What was looked for, and what came of it.
+/// The result of a search.
 #[derive(Clone, Debug, Default)]
 pub struct SearchResult {
-    /// The best matches, whether or not they are accepted, the best first.
+    /// The best matches, accepted or not, the best first.
     pub matches: Vec<PartMatch>,
-    /// The best of those of which too little is seen to tell the pose.
+    /// The best match whose pose is not determined: too little of the part is visible.
     pub little: Option<Box<PartMatch>>,
-    /// Chains of lines of the picture.
+    /// The numbers of chains of lines of the image, by kind.
     pub chains: [usize; 2],
-    /// Poses that were proposed.
+    /// The number of proposed poses.
     pub proposed: usize,
-    /// Whether chains or ellipses were left out because there were too many.
+    /// Whether chains or ellipses were left out because of the limits.
     pub cut: bool,
 }
 
@@ -271,8 +276,8 @@ impl SearchResult {
         self.matches.first()
     }
 
-    /// The matches at other poses that are accepted, too, and no less likely by much; what tells the
-    /// poses of a nearly symmetric part apart is often not seen.
+    /// The other accepted matches whose odds are less by at most `RIVAL`. The features that
+    /// distinguish the poses of a nearly symmetric part are often not visible.
     pub fn rivals(&self) -> &[PartMatch] {
         let Some((best, others)) = self.matches.split_first() else {
             return &[];
@@ -284,8 +289,8 @@ impl SearchResult {
 }
 
 impl SearchResult {
-    /// The accepted matches that are made of other edges of the picture: instances of the part, the
-    /// likeliest first. More of them may be in the picture, as only the best poses are searched.
+    /// The accepted matches that use other edges of the image: instances of the part, the likeliest
+    /// first. The image may show more of them, because only the best poses are searched.
     pub fn instances(&self) -> Vec<&PartMatch> {
         let mut known: Vec<&PartMatch> = Vec::new();
         for found in self.matches.iter().filter(|m| m.is_accepted()) {
@@ -297,11 +302,11 @@ impl SearchResult {
     }
 }
 
-/// Matches that share more of their segments are of one thing.
+/// Matches that share more of their segments than this are of the same thing.
 const OVERLAP: f64 = 0.25;
 
-/// A match whose odds are less by this, as a logarithm, is no rival.
+/// The greatest difference of log-odds between the best match and a rival.
 const RIVAL: f64 = 3.0;
 
-/// So many features of a match are doubted, one after another.
+/// How many features of a match are left out in turn when it is improved.
 const DOUBTED: usize = 4;

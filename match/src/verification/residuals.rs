@@ -1,8 +1,10 @@
-//! How far features are off their contours as wholes, against how rough their edges are.
+//! The residuals of edges, split into the systematic offset of features and the roughness of their
+//! edges.
 //!
-//! The features of a part lie where its contours do, however rough their edges are; those of another
-//! thing may have as fine edges, and lie next to the contours, or askew. What a move, a turn and a scale
-//! of the image bring nearer is taken for the former, what is left for the latter.
+//! The features of a part lie on their contours, however rough their edges are. Those of another
+//! thing may have edges as smooth, and lie next to the contours or at an angle to them. For each
+//! feature a translation, a rotation and a scale of the image are fitted to its edges. The residual
+//! that they remove is the systematic offset; what remains is the roughness.
 
 use crate::camera::Pinhole;
 use crate::pose::refine::{PointToLine, residual};
@@ -10,22 +12,23 @@ use nalgebra::{Isometry3, Matrix4, Point2, Vector2, Vector4};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The deviation of a move, in pixels, and of a turn and of a scale: so large that little is taken off,
-/// and small enough that what an edge does not tell, as a move along a line, is nothing.
+/// The prior deviations of the translation, in pixels, and of the rotation and the scale. They are
+/// large enough to remove nearly all of an offset. They are small enough that undetermined motions,
+/// such as a translation along a line, stay zero.
 const FREE: [f64; 2] = [6.0, 0.25];
 
-/// How far edges are off contours, as root mean squares in pixels.
+/// The residuals of edges from contours, as root mean squares in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct SystematicOffset {
-    /// Features as wholes.
+    /// The systematic offset.
     pub wholes: f64,
-    /// The edges of each, next to that.
+    /// The roughness.
     pub edges: f64,
 }
 
 impl SystematicOffset {
-    /// How far the edges are off that the features of a part at a pose are drawn to: of all together, and
-    /// of each; none of those that are drawn to nothing.
+    /// The residuals of all features of a part at a pose, and of each; none for features without
+    /// edges.
     pub fn new(
         camera: &Pinhole,
         pose: &Isometry3<f64>,
@@ -41,7 +44,7 @@ impl SystematicOffset {
         )
     }
 
-    /// Of weighted squares, and the sum of weights.
+    /// The root mean squares of weighted sums of squares and the sum of weights.
     fn root([wholes, edges, weight]: [f64; 3]) -> Self {
         Self {
             wholes: (wholes / weight).sqrt(),
@@ -50,8 +53,8 @@ impl SystematicOffset {
     }
 }
 
-/// The weighted squares of how far a feature's edges are off as a whole, and next to that, and the sum of
-/// weights; none where there is no weight.
+/// The weighted sums of squares of the systematic offset and of the roughness of a feature, and the
+/// sum of weights; none where there is no weight.
 fn squares(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine]) -> Option<[f64; 3]> {
     let seen = pulls.iter().filter_map(|pull| {
         let (off, _) = residual(camera, pose, pull)?;
@@ -67,7 +70,7 @@ fn squares(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine]) -> Op
     (sums[2] > 0.0).then_some(sums)
 }
 
-/// How far the edges of one feature are off when it is moved, turned and scaled to be nearest to them.
+/// The residuals of one feature's edges after it is translated, rotated and scaled to fit them.
 fn left(seen: &[(f64, &PointToLine)]) -> Option<Vec<f64>> {
     let places = seen
         .iter()
@@ -77,7 +80,7 @@ fn left(seen: &[(f64, &PointToLine)]) -> Option<Vec<f64>> {
     let middle = Point2::from(sum / places.len() as f64);
     let ways = seen.iter().zip(&places);
     let ways: Vec<Vector4<f64>> = ways
-        .map(|((_, pull), place)| ways_off(&pull.normal, &(place - middle)))
+        .map(|((_, pull), place)| motion_along_normal(&pull.normal, &(place - middle)))
         .collect();
     let [moves, turns] = FREE.map(|free| 1.0 / (free * free));
     let mut normal = Matrix4::from_diagonal(&Vector4::new(moves, moves, turns, turns));
@@ -91,8 +94,9 @@ fn left(seen: &[(f64, &PointToLine)]) -> Option<Vec<f64>> {
     Some(left.map(|((off, _), way)| off - way.dot(&step)).collect())
 }
 
-/// How far a contour goes along its normal by a move, by a turn and by a scale about what is so far off.
-fn ways_off(normal: &Vector2<f64>, from: &Vector2<f64>) -> Vector4<f64> {
+/// The derivatives of a contour point's motion along its normal: by the two components of a
+/// translation, by a rotation and by a scale about a centre, from which the point lies at `from`.
+fn motion_along_normal(normal: &Vector2<f64>, from: &Vector2<f64>) -> Vector4<f64> {
     Vector4::new(normal.x, normal.y, from.perp(normal), normal.dot(from))
 }
 
@@ -109,7 +113,7 @@ mod tests {
         skew: 0.0,
     };
 
-    /// Edges that lie off points a unit away, as far along normals as is told.
+    /// Edges at given distances along the normals from points at depth 1.
     fn pulls(at: impl Fn(f64) -> ([f64; 2], [f64; 2], f64)) -> Vec<PointToLine> {
         let all = (0..64).map(|k| {
             let (place, normal, off) = at(f64::from(k) / 64.0);
@@ -129,11 +133,12 @@ mod tests {
     }
 
     #[test]
-    fn a_line_beside_its_edge_is_off_as_a_whole_and_a_rough_one_is_not() {
-        let beside = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0)));
-        assert_relative_eq!(beside.wholes, 2.0, epsilon = 0.01);
-        assert!(beside.edges < 0.01, "{beside:?}");
-        // To either side by turns: what a line takes of it is the little that the ends do not balance.
+    fn a_line_next_to_its_edge_has_a_systematic_offset_and_a_rough_one_has_none() {
+        let adjacent = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0)));
+        assert_relative_eq!(adjacent.wholes, 2.0, epsilon = 0.01);
+        assert!(adjacent.edges < 0.01, "{adjacent:?}");
+        // The edges alternate between both sides. The fitted line removes only the little that the
+        // ends do not balance.
         let rough = of(pulls(|t| {
             let side = (f64::consts::PI * 64.0 * t).cos();
             ([64.0 * t, 0.0], [0.0, 1.0], side)
@@ -143,15 +148,15 @@ mod tests {
     }
 
     #[test]
-    fn a_line_askew_is_off_as_a_whole() {
-        // From -1 to 1: the root mean square is 1/√3.
-        let askew = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0 * t - 1.0)));
-        assert_relative_eq!(askew.wholes, 3.0_f64.sqrt().recip(), epsilon = 0.02);
-        assert!(askew.edges < 0.02, "{askew:?}");
+    fn a_tilted_line_has_a_systematic_offset() {
+        // The offset runs from -1 to 1: its root mean square is 1/√3.
+        let tilted = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0 * t - 1.0)));
+        assert_relative_eq!(tilted.wholes, 3.0_f64.sqrt().recip(), epsilon = 0.02);
+        assert!(tilted.edges < 0.02, "{tilted:?}");
     }
 
     #[test]
-    fn a_circle_moved_or_of_another_radius_is_off_as_a_whole() {
+    fn a_circle_moved_or_of_another_radius_has_a_systematic_offset() {
         let circle = |off: fn(f64, f64) -> f64| {
             of(pulls(move |t| {
                 let (y, x) = (t * f64::consts::TAU).sin_cos();
@@ -161,7 +166,7 @@ mod tests {
         for found in [circle(|x, _| x), circle(|x, y| x + y), circle(|_, _| 1.0)] {
             assert!(found.edges < 0.1 * found.wholes, "{found:?}");
         }
-        // An ellipse of other axes is none of these.
+        // Another ratio of axes is not a similarity, so it counts as roughness.
         let squeezed = circle(|x, y| x * x - y * y);
         assert!(squeezed.wholes < 0.1 * squeezed.edges, "{squeezed:?}");
     }

@@ -1,12 +1,18 @@
-//! How much a match tells of a part's shape: whether what is found could as well be another thing of
-//! the same kind, or a figure on a flat one.
+//! How well a match determines the shape of a part: whether what is found could be another thing of
+//! the same kind, or a figure on a flat thing.
 //!
-//! Things of a kind have the same carriers, each moved and offset: boxes of any sides, plates with
-//! their holes anywhere. What is found is weighed for the part against such a thing by Laplace's method:
-//! both are drawn to the same edges by their pose and their carriers, which differ little from part to
-//! part and much from thing to thing. Where the edges tell the shape, the part foretold it and the thing
-//! did not (the Occam factor: MacKay 1992); where the thing comes closer to them, that tells against the
-//! part. A rectangle can be a face of many boxes, and tells next to nothing of which.
+//! Things of a kind have the same carriers, each translated and offset: boxes of any sides, plates
+//! with their holes anywhere. Laplace's method compares the part with such a thing. Both are fitted
+//! to the same edges by their pose and their carriers. The carriers vary little from part to part
+//! and much from thing to thing. Where the edges determine the shape, the part predicted it and the
+//! thing did not (the Occam factor: MacKay 1992). Where the thing fits the edges better, that is
+//! evidence against the part. A rectangle can be a face of many boxes, so it hardly determines
+//! which.
+//!
+//! Notation: H is the information matrix of the pose and the carriers' parameters from the edges, g
+//! the gradient of half the weighted squared residuals, P the prior information (diagonal). The
+//! evidence is (ln det(H + P) − ln det P) / 2, and the gain of the best fit is gᵀ (H + P)⁻¹ g / 2.
+//! Each is taken with P of a part and with P of a thing.
 
 use crate::camera::Pinhole;
 use crate::part::SoughtPart;
@@ -21,41 +27,42 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
-/// The deviation of a carrier, in the part's radius: from part to part, as they are made and measured,
-/// and from thing to thing.
+/// The standard deviations of a carrier's parameters, in the part's radius: from part to part, as
+/// they are made and measured, and from thing to thing.
 const VARIES: [f64; 2] = [0.01, 0.5];
-/// The deviation of an edge: in the distance of edges from contours, which is at least so many pixels.
+/// The standard deviation of an edge: this factor times the root mean square residual, which is
+/// taken as at least `MIN_RATE` pixels.
 const DEVIATION: f64 = 2.0;
 const MIN_RATE: f64 = 0.1;
-/// So many numbers tell a pose.
+/// The number of a pose's parameters.
 const POSE: usize = 6;
-/// As near, in pixels, an edge lies about a face's contour.
+/// An edge within this distance, in pixels, of a face's contour counts as lying on it.
 const ABOUT: f64 = 8.0;
 
-/// What is told of a part's shape.
+/// The evidence of a part's shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct ShapeEvidence {
-    /// The logarithm of how many times as many shapes a thing of the kind could have as agree with what
-    /// is found.
+    /// The Occam factor: the logarithm of the number of shapes that a thing of the kind can have
+    /// over the number of those that agree with what is found.
     #[serde(rename = "told")]
     pub determined: f64,
-    /// The logarithm of how much better the likeliest of them fits.
+    /// The logarithm of how much better the likeliest of these shapes fits than the part.
     pub denied: f64,
-    /// The share of what is found that does not lie about one plane face's contour: nothing, if all of
-    /// it could be a figure on a flat thing.
+    /// The share of what is found that lies off the contour of any one plane face; 0 if all of it
+    /// could be a figure on a flat thing.
     pub relief: f64,
-    /// The share of the carriers whose contours are visible, in the picture or out of it, that something is
-    /// found of.
+    /// The share of the carriers with visible contours, inside the image or outside, of which
+    /// something is found.
     pub carriers: f64,
-    /// Of the others, how unlikely it is that their features are missed, or out of the picture, where they
-    /// are there: a logarithm.
+    /// Of the other carriers: the log-likelihood that their features are missed or lie outside the
+    /// image.
     #[serde(rename = "untold")]
     pub undetermined: f64,
 }
 
 impl ShapeEvidence {
-    /// What the edges of a match tell; nothing where there are none. Features that are found so badly that
-    /// they tell against the part are not requested its shape.
+    /// The evidence of a match's edges. Features that are found so badly that they count against
+    /// the part are left out.
     pub fn new(part: &SoughtPart<'_>, camera: &Pinhole, found: &PartMatch) -> Self {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);
@@ -66,57 +73,58 @@ impl ShapeEvidence {
         Self {
             carriers: there.len() as f64 / visible.len().max(1) as f64,
             undetermined: undetermined(part, found, &visible, &there),
-            ..Self::told_by(part, camera, &found.pose, features)
+            ..Self::from_edges(part, camera, &found.pose, features)
         }
     }
 
-    /// What edges tell that features of a part are drawn to at a pose.
-    fn told_by<'a>(
+    /// The evidence of the edges that features of a part are fitted to at a pose.
+    fn from_edges<'a>(
         part: &SoughtPart<'_>,
         camera: &Pinhole,
         pose: &Isometry3<f64>,
         features: impl Iterator<Item = (ArcSource, &'a [PointToLine])>,
     ) -> Self {
         let pulls = features.flat_map(|(source, pulls)| pulls.iter().map(move |p| (source, p)));
-        let drawn: Vec<Drawn> = pulls
-            .filter_map(|(source, pull)| Drawn::new(part, camera, pose, source, pull))
+        let fitted: Vec<FittedPoint> = pulls
+            .filter_map(|(source, pull)| FittedPoint::new(part, camera, pose, source, pull))
             .collect();
-        let squares: f64 = drawn.iter().map(|d| d.weight * d.off * d.off).sum();
-        let weights: f64 = drawn.iter().map(|d| d.weight).sum();
+        let squares: f64 = fitted.iter().map(|d| d.weight * d.off * d.off).sum();
+        let weights: f64 = fitted.iter().map(|d| d.weight).sum();
         let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
         let deviation = DEVIATION * rms.max(MIN_RATE);
-        let told = against_its_kind(part, pose, &drawn, deviation);
-        let [told, denied] = told.unwrap_or_default();
+        let evidence = against_its_kind(part, pose, &fitted, deviation);
+        let [determined, denied] = evidence.unwrap_or_default();
         Self {
-            determined: told,
+            determined,
             denied,
-            relief: relief(part, &drawn),
+            relief: relief(part, &fitted),
             carriers: 1.0,
             undetermined: 0.0,
         }
     }
 
-    /// What is told for the part and against things of its kind.
+    /// The log-likelihood ratio of the part against things of its kind.
     pub fn ratio(&self) -> f64 {
         self.determined - self.denied
     }
 }
 
-/// A point of the part that is drawn to an edge.
+/// A point of the part that is fitted to an edge.
 #[derive(Debug)]
-struct Drawn {
+struct FittedPoint {
     point: Point3<f64>,
     image: Point2<f64>,
-    /// How far the image is off the edge, and what that counts.
+    /// The residual of its image from the edge, and its weight.
     off: f64,
     weight: f64,
-    /// How much farther, by each number of the pose.
+    /// The derivative of the residual by each parameter of the pose.
     by_pose: [f64; POSE],
-    /// The faces of its feature, and how much farther where the carrier of each is offset by a unit.
+    /// The faces of its feature, and the derivative of the residual by an offset of the carrier of
+    /// each.
     by_face: Vec<(FaceId, f64)>,
 }
 
-impl Drawn {
+impl FittedPoint {
     fn new(
         part: &SoughtPart<'_>,
         camera: &Pinhole,
@@ -125,7 +133,7 @@ impl Drawn {
         pull: &PointToLine,
     ) -> Option<Self> {
         let (off, by_pose) = residual(camera, pose, pull)?;
-        // By a move of the point, in the part's frame.
+        // The derivative by a translation of the point, in the part's frame.
         let slope = pose.rotation.inverse() * by_pose.fixed_rows::<3>(3).into_owned();
         let moves = moves(part, source, &pull.point).into_iter();
         Some(Self {
@@ -143,14 +151,14 @@ impl Drawn {
     }
 }
 
-/// The carriers that features are of.
+/// The carriers of features.
 fn carriers(part: &SoughtPart<'_>, features: impl Iterator<Item = ArcSource>) -> BTreeSet<usize> {
     let surface = |face: FaceId| part.brep.geometry.patches[face.0 as usize].surface;
     let faces = features.flat_map(|source| faces(part, source));
     faces.map(surface).collect()
 }
 
-/// See [`ShapeEvidence::untold`].
+/// See [`ShapeEvidence::undetermined`].
 fn undetermined(
     part: &SoughtPart<'_>,
     found: &PartMatch,
@@ -158,7 +166,7 @@ fn undetermined(
     there: &BTreeSet<usize>,
 ) -> f64 {
     let of = |source| carriers(part, std::iter::once(source));
-    // By carrier: how long its contours are in the picture, and in all.
+    // By carrier: the length of its contours in the image, and in all.
     let mut lengths: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
     let inside = found.pairs.iter().map(|pair| (pair.source, pair.length, 0));
     let all = found.arcs.iter().map(|arc| (arc.source, arc.length, 1));
@@ -177,21 +185,21 @@ fn undetermined(
     missed + OUT * (1.0 - out).max(f64::MIN_POSITIVE).ln()
 }
 
-/// How unlikely it is that the border of the picture cuts carriers off, by the logarithm of the share of
-/// those that are left.
+/// The weight of the logarithm of the share of carriers that the border of the image does not cut
+/// off.
 const OUT: f64 = 25.0;
 
-/// The faces that a feature is of.
+/// The faces of a feature.
 fn faces(part: &SoughtPart<'_>, source: ArcSource) -> Vec<FaceId> {
     match source {
         ArcSource::Edge { edge } => part.brep.topology.faces_of(EdgeId(edge)).take(2).collect(),
         ArcSource::Limb { face, .. } => vec![FaceId(face)],
-        // A part is looked for by its own contours.
+        // Only the part's own contours are searched for.
         _ => Vec::new(),
     }
 }
 
-/// How a point of a feature moves where the carrier of each of its faces is offset by a unit.
+/// The derivative of a feature's point by an offset of the carrier of each of its faces.
 fn moves(
     part: &SoughtPart<'_>,
     source: ArcSource,
@@ -201,7 +209,8 @@ fn moves(
     match faces(part, source)[..] {
         [a, b] => {
             let [m, n] = [a, b].map(|f| brep.outward(f, point));
-            // In the plane of both normals, by one along its own, by nothing along the other.
+            // The dual basis in the plane of both normals: each vector moves 1 along its own normal
+            // and 0 along the other.
             let c = m.dot(&n);
             let Some(dual) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else {
                 return Vec::new();
@@ -216,16 +225,17 @@ fn moves(
     }
 }
 
-/// Where the numbers of carriers are among all: of each its offset, and of those that are no planes
-/// their move.
+/// The indices of the carriers' parameters: each has an offset, and carriers other than planes a
+/// translation.
 #[derive(Debug, Default)]
-struct Places {
+struct ParameterIndex {
     first: BTreeMap<usize, usize>,
     count: usize,
 }
 
-impl Places {
-    /// The place and the factor of each number that a face's offset by a unit is one of.
+impl ParameterIndex {
+    /// The parameters that a point on a face depends on: index, and derivative of its distance
+    /// along the normal.
     fn distances(
         &mut self,
         part: &SoughtPart<'_>,
@@ -248,33 +258,33 @@ impl Places {
     }
 }
 
-/// What tells for a part, and against it, with a thing of its kind as the other.
+/// The two logarithms that compare the part with a thing of its kind: `determined` and `denied`.
 fn against_its_kind(
     part: &SoughtPart<'_>,
     pose: &Isometry3<f64>,
-    drawn: &[Drawn],
+    fitted: &[FittedPoint],
     deviation: f64,
 ) -> Option<[f64; 2]> {
-    let mut places = Places::default();
-    let rows: Vec<Vec<(usize, f64)>> = drawn
+    let mut indices = ParameterIndex::default();
+    let rows: Vec<Vec<(usize, f64)>> = fitted
         .iter()
         .map(|d| {
             let mut row: Vec<(usize, f64)> = d.by_pose.into_iter().enumerate().collect();
             for &(face, by) in &d.by_face {
-                let numbers = places.distances(part, face, &d.point);
+                let numbers = indices.distances(part, face, &d.point);
                 row.extend(numbers.into_iter().map(|(i, factor)| (i, by * factor)));
             }
             row
         })
         .collect();
-    let size = POSE + places.count;
-    let (mut told, mut slope) = (DMatrix::zeros(size, size), DVector::zeros(size));
-    for (d, row) in drawn.iter().zip(&rows) {
+    let size = POSE + indices.count;
+    let (mut information, mut slope) = (DMatrix::zeros(size, size), DVector::zeros(size));
+    for (d, row) in fitted.iter().zip(&rows) {
         let weight = d.weight / (deviation * deviation);
         for &(i, a) in row {
             slope[i] += weight * a * d.off;
             for &(j, b) in row {
-                told[(i, j)] += weight * a * b;
+                information[(i, j)] += weight * a * b;
             }
         }
     }
@@ -286,16 +296,20 @@ fn against_its_kind(
             3..POSE => 1.0 / (distance * distance),
             _ => 1.0 / (deviation * deviation),
         });
-        weighed(&told, &slope, &prior)
+        laplace(&information, &slope, &prior)
     });
     let ([known, fits], [varied, fits_better]) = (of_part?, of_thing?);
     Some([varied - known, fits_better - fits])
 }
 
-/// By Laplace's method, as logarithms: how much narrower what is told is than what was known before, and
-/// how much better the likeliest numbers fit than those that were.
-fn weighed(told: &DMatrix<f64>, slope: &DVector<f64>, prior: &DVector<f64>) -> Option<[f64; 2]> {
-    let mut all = told.clone();
+/// Laplace's method, as logarithms: the information gain over the prior, and the gain of the best
+/// fit over the given parameters.
+fn laplace(
+    information: &DMatrix<f64>,
+    slope: &DVector<f64>,
+    prior: &DVector<f64>,
+) -> Option<[f64; 2]> {
+    let mut all = information.clone();
     all.set_diagonal(&(all.diagonal() + prior));
     let all = all.cholesky()?;
     let determinant: f64 = 2.0 * all.l_dirty().diagonal().map(f64::ln).sum();
@@ -304,8 +318,8 @@ fn weighed(told: &DMatrix<f64>, slope: &DVector<f64>, prior: &DVector<f64>) -> O
 }
 
 /// See [`ShapeEvidence::relief`].
-fn relief(part: &SoughtPart<'_>, drawn: &[Drawn]) -> f64 {
-    let faces: BTreeSet<FaceId> = drawn
+fn relief(part: &SoughtPart<'_>, fitted: &[FittedPoint]) -> f64 {
+    let faces: BTreeSet<FaceId> = fitted
         .iter()
         .flat_map(|d| d.by_face.iter().map(|f| f.0))
         .collect();
@@ -313,12 +327,13 @@ fn relief(part: &SoughtPart<'_>, drawn: &[Drawn]) -> f64 {
         .into_iter()
         .filter(|f| matches!(part.brep.surface(*f), Surface::Plane(_)));
     let off = planes.map(|face| {
-        let (on, others): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|d| d.is_on(face));
+        let (on, others): (Vec<&FittedPoint>, Vec<&FittedPoint>) =
+            fitted.iter().partition(|d| d.is_on(face));
         let far = others.iter().filter(|d| {
-            let near = |o: &&Drawn| (o.image - d.image).norm_squared() <= ABOUT * ABOUT;
+            let near = |o: &&FittedPoint| (o.image - d.image).norm_squared() <= ABOUT * ABOUT;
             !on.iter().any(near)
         });
-        far.count() as f64 / drawn.len() as f64
+        far.count() as f64 / fitted.len() as f64
     });
     off.fold(1.0, f64::min)
 }

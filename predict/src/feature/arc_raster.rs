@@ -1,4 +1,4 @@
-//! Arcs as pixels (Bresenham 1965), each with the place on its arc that it shows.
+//! Arcs rasterised as pixels (Bresenham 1965), each with the point of its arc that it shows.
 
 use crate::image::bitmap::Bitmap;
 use crate::image_arcs::PredictedArc;
@@ -13,13 +13,13 @@ pub struct InkPixel {
     pub y: i32,
     /// The arc.
     pub arc: u32,
-    /// How far along the arc, in pixels.
+    /// The length along the arc, in pixels.
     pub along: f64,
     /// The point of the arc next to the pixel's centre.
     pub at: [f64; 2],
     /// The arc's unit direction there.
     pub direction: [f64; 2],
-    /// The next pixel of another place of an arc in the same place; itself at the end.
+    /// The index of the next arc pixel at the same image pixel; its own index at the end.
     next: u32,
 }
 
@@ -30,11 +30,11 @@ pub struct ArcRaster {
     height: usize,
     /// The pixels, arc by arc, in the order in which the arcs run.
     pub pixels: Vec<InkPixel>,
-    /// By pixel of the image: the last of `pixels` in it.
+    /// By image pixel: the index of the last of `pixels` in it.
     last: Vec<u32>,
-    /// By arc: which of `pixels` are its own.
+    /// By arc: the range of its pixels.
     pub ranges: Vec<std::ops::Range<usize>>,
-    /// By arc: how long it is within the image, and at which length the image begins.
+    /// By arc: its length within the image, and the length at which it enters the image.
     pub spans: Vec<[f64; 2]>,
 }
 
@@ -46,7 +46,7 @@ impl ArcRaster {
         Self::within(arcs, size, Vec::new())
     }
 
-    /// The same in memory that is used again, and given back by [`Self::into_memory`].
+    /// The pixels of arcs, in reused memory, which [`Self::into_memory`] returns.
     pub fn within(arcs: &[PredictedArc], [width, height]: [usize; 2], mut last: Vec<u32>) -> Self {
         last.clear();
         last.resize(width * height, NONE);
@@ -73,7 +73,7 @@ impl ArcRaster {
         ink
     }
 
-    /// The memory it is kept in.
+    /// Returns its memory.
     pub fn into_memory(self) -> Vec<u32> {
         self.last
     }
@@ -123,7 +123,7 @@ impl ArcRaster {
         });
     }
 
-    /// The part of a segment in the image and one pixel beyond, by its end pixels.
+    /// The part of a segment within the image and a margin of one pixel, by its end pixels.
     fn clip(&self, a: [f64; 2], b: [f64; 2]) -> Option<[[i32; 2]; 2]> {
         let most = [self.width as f64, self.height as f64];
         let (mut from, mut to) = (0.0f64, 1.0f64);

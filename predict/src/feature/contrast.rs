@@ -6,24 +6,24 @@ use crate::image_arcs::{PredictedArc, Regions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far apart the places are at which the sides are looked at, in pixels.
+/// The spacing of the positions at which the sides are evaluated, in pixels.
 const EVERY: f64 = 6.0;
-/// How far from the arc they are looked at: where the first plain pixel is.
+/// The distance from the arc at which the sides are evaluated: that of the first unmixed pixel.
 const ASIDE: f64 = 1.0;
 
 /// The grey levels on both sides of an arc, before noise and steps.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Contrast {
-    /// How far along the arc, in pixels.
+    /// The length along the arc, in pixels.
     pub along: f64,
-    /// The level to the left, as it runs.
+    /// The level to the left of its direction.
     pub left: f64,
     /// The level to the right.
     pub right: f64,
 }
 
 impl Contrast {
-    /// By how many levels the sides differ, as far as a sensor with this top level tells.
+    /// The difference of the sides in levels, clipped to the range of a sensor with this top level.
     pub fn difference(&self, top: f64) -> f64 {
         (self.left.clamp(0.0, top) - self.right.clamp(0.0, top)).abs()
     }
@@ -65,10 +65,10 @@ pub fn contrast(
                 continue;
             }
             let at = [a[0] + s * d[0], a[1] + s * d[1]];
-            // With y down the left is where the direction turns to against the clock.
-            let aside = [ASIDE * d[1], -ASIDE * d[0]];
+            // With y down, left is the direction turned counterclockwise.
+            let lateral = [ASIDE * d[1], -ASIDE * d[0]];
             let level = |side: usize, sign: f64| {
-                let at = [at[0] + sign * aside[0], at[1] + sign * aside[1]];
+                let at = [at[0] + sign * lateral[0], at[1] + sign * lateral[1]];
                 let region = &regions.all[sides[section][side] as usize];
                 let seen = region.seen.unwrap_or_else(|| shading.cast(at));
                 shading.level(at, &seen, &mut shading.distance(&seen.point))

@@ -1,4 +1,4 @@
-//! What a detector found of each arc: its edge pixels, told to the arcs that they are the image of.
+//! What a detector found of each arc: edge pixels assigned to the arcs whose images they are.
 
 use super::Criteria;
 use super::arc_raster::ArcRaster;
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 
 /// The cosine of the greatest angle between an edge's gradient and the normal of its arc.
 const ALIGNED: f64 = 0.77;
-/// How much of an arc one edge pixel stands for, on each side of it, in pixels.
+/// The length of an arc that one edge pixel represents, on each side of it, in pixels.
 const STANDS_FOR: f64 = 0.75;
 
-/// How much of an arc is found.
+/// The detection state of an arc.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
 pub enum DetectionState {
-    /// In one piece, all but its ends.
+    /// In one piece, except for its ends.
     Whole,
     /// In pieces, or in part.
     Broken,
@@ -29,12 +29,12 @@ impl DetectionState {
     /// All states.
     pub const ALL: [Self; 3] = [Self::Whole, Self::Broken, Self::Missed];
 
-    /// Its place in [`Self::ALL`].
+    /// Its index in [`Self::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// The word for it.
+    /// Its word in reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Whole => "whole",
@@ -47,26 +47,26 @@ impl DetectionState {
 /// A piece of an arc that is found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fragment {
-    /// From where to where along the arc, in pixels.
+    /// Its range along the arc, in pixels.
     pub along: [f64; 2],
-    /// The detector's segments that it is made of.
+    /// The indices of its segments in the detection.
     pub segments: Vec<u32>,
 }
 
-/// What is found of an arc.
+/// The detection of an arc.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetectedArc {
     /// The pieces of it, in order.
     pub fragments: Vec<Fragment>,
-    /// The share of it that they cover, its ends left out.
+    /// The covered share of the arc without its ends.
     pub share: f64,
-    /// What that comes to.
+    /// The resulting state.
     pub state: DetectionState,
     /// The root mean square distance of the edge pixels from it, in pixels.
     pub off: f64,
 }
 
-/// An edge pixel that is of an arc.
+/// An edge pixel assigned to an arc.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
     along: f64,
@@ -96,14 +96,14 @@ pub fn evidence(
             }
         }
     }
-    // What the mask sees next to the end of an arc is not of it alone.
+    // Near the end of an arc the mask also covers other arcs.
     let margin = detector.radius() as f64 + 1.0;
     let all = marks.into_iter().zip(&ink.spans);
     all.map(|(marks, span)| judge(marks, *span, margin, detector.gap, criteria))
         .collect()
 }
 
-/// The arc that an edge pixel is of, where along it, and how far from it.
+/// The arc of an edge pixel, the length along it, and the distance from it.
 fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, f64)> {
     let window = reach.ceil() as i64;
     let gradient = pixel.gradient;
@@ -119,7 +119,7 @@ fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, 
                 if across.abs() > reach || along.abs() > 1.0 || aligned < ALIGNED {
                     continue;
                 }
-                // A pixel that is next to in direction is as bad as one that is a pixel off.
+                // An edge at the greatest angle costs as much as one at a distance of one pixel.
                 let cost = d[0].hypot(d[1]) + (1.0 - aligned) / (1.0 - ALIGNED);
                 if best.is_none_or(|known| cost < known.0) {
                     best = Some((cost, (near.arc, near.along + along, across)));
@@ -130,7 +130,7 @@ fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, 
     best.map(|b| b.1)
 }
 
-/// What the edge pixels of an arc come to.
+/// The detection that results from the edge pixels of an arc.
 fn judge(
     mut marks: Vec<Mark>,
     [start, end]: [f64; 2],
@@ -169,7 +169,7 @@ fn judge(
     for fragment in &mut fragments {
         fragment.along[1] = fragment.along[1].min(end);
     }
-    // The core of the arc: without its ends, but for short ones.
+    // The core of the arc: without its ends, which are shorter for short arcs.
     let inset = margin.min(0.25 * (end - start));
     let core = [start + inset, end - inset];
     let within = |f: &Fragment| (f.along[1].min(core[1]) - f.along[0].max(core[0])).max(0.0);

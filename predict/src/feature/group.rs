@@ -10,9 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A boundary of a region.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct BoundaryGroup {
-    /// Its arcs, in order; the region is to the left of the way along them.
+    /// Its arcs, in order; the region is to their left.
     pub arcs: Vec<u32>,
-    /// Whether it comes back to where it starts.
+    /// Whether it is closed.
     pub closed: bool,
     /// Whether the region is outside of it.
     pub hole: bool,
@@ -23,7 +23,7 @@ pub struct BoundaryGroup {
 struct Step {
     section: u32,
     arc: u32,
-    /// Whether it is run as the arc runs.
+    /// Whether it has the direction of the arc.
     along: bool,
     from: u32,
     to: u32,
@@ -81,7 +81,7 @@ fn step(
     }
 }
 
-/// The closed and open walks that steps with the region on their left make.
+/// The closed and open walks formed by steps with the region on their left.
 fn walks(arcs: &[PredictedArc], steps: &[Step], regions: &Regions) -> Vec<BoundaryGroup> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (i, step) in steps.iter().enumerate() {
@@ -103,7 +103,7 @@ fn walks(arcs: &[PredictedArc], steps: &[Step], regions: &Regions) -> Vec<Bounda
                 .min_by(|&a, &b| turn(step, &steps[a]).total_cmp(&turn(step, &steps[b])));
             let back = steps[start].from == step.to;
             match next {
-                // The walk closes where going back to its start turns less than any way on.
+                // The walk closes where the turn back to its start is less than to any other step.
                 Some(i) if !back || turn(step, &steps[i]) < turn(step, &steps[start]) => {
                     used[i] = true;
                     walk.push(i);
@@ -116,11 +116,12 @@ fn walks(arcs: &[PredictedArc], steps: &[Step], regions: &Regions) -> Vec<Bounda
     found
 }
 
-/// How far a step turns from going back on the one before, against the clock on the page: the region
-/// on the left lies between the two, so that the way on is the first one found turning with it.
+/// The angle by which a step turns from the reverse of the previous one, counterclockwise on the
+/// page. The region on the left lies between the two, so the next step is the first one found
+/// turning clockwise.
 fn turn(before: &Step, after: &Step) -> f64 {
     let back = before.angles[1] + std::f64::consts::PI;
-    // Angles grow with the clock, as y points down.
+    // Angles grow clockwise, because y points down.
     let turned = (after.angles[0] - back).rem_euclid(std::f64::consts::TAU);
     match before.section == after.section && before.along != after.along {
         true => std::f64::consts::TAU,
@@ -155,12 +156,12 @@ fn boundary(
     BoundaryGroup {
         arcs: own,
         closed: first.from == last.to,
-        // Against the clock on a page whose y points down is a negative area.
+        // Counterclockwise on a page whose y points down is a negative area.
         hole: twice_area > 0.0,
     }
 }
 
-/// Arcs that follow one another.
+/// A chain of consecutive arcs.
 #[derive(
     Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, JsonSchema, Serialize, Deserialize,
 )]
@@ -177,7 +178,7 @@ fn ends_of(count: usize, junctions: &[PredictedJunction]) -> Vec<[Option<u32>; 2
     for (j, junction) in junctions.iter().enumerate() {
         let branches = &junction.branches;
         for b in branches {
-            // What passes through has two branches there, and no end.
+            // An arc that passes through has two branches there, and no end.
             let ways = branches
                 .iter()
                 .filter(|o| o.arc == b.arc && o.along == b.along)
@@ -246,7 +247,8 @@ pub fn chains(count: usize, junctions: &[PredictedJunction]) -> Vec<ArcChain> {
     found
 }
 
-/// Three arcs, the middle one of which meets the others at its ends (Henikoff and Shapiro 1990).
+/// Three arcs, the middle one of which has a junction with the others at its ends (Henikoff and
+/// Shapiro 1990).
 pub fn triplets(count: usize, junctions: &[PredictedJunction]) -> Vec<[u32; 3]> {
     let mut found = BTreeSet::new();
     for (arc, ends) in ends_of(count, junctions).iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Where arcs meet in the image.
+//! Junctions of arcs in the image.
 
 use super::arc_raster::ArcRaster;
 use super::detected_arc::DetectedArc;
@@ -7,13 +7,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// Ends of arcs that are nearer than this to one another, in pixels, are one point.
+/// The distance, in pixels, within which ends of arcs are one point.
 const ONE: f64 = 1.0 / 16.0;
-/// How far along a branch its direction is taken, in pixels.
+/// The length along a branch at which its direction is evaluated, in pixels.
 const TURN: f64 = 3.0;
-/// The greatest angle by which two branches that go straight on are off.
+/// The greatest angle between two branches that count as collinear.
 const STRAIGHT: f64 = PI / 15.0;
-/// How far from a junction a branch may end that is found, besides the detector's margin, in pixels.
+/// The greatest distance, in pixels, of the end of a found branch from its junction, in addition to
+/// the detector's margin.
 pub const NEAR: f64 = 3.0;
 
 /// The form of a junction.
@@ -24,11 +25,11 @@ pub const NEAR: f64 = 3.0;
 pub enum JunctionForm {
     /// One arc ends.
     End,
-    /// Two arcs go on into one another.
+    /// Two arcs continue each other.
     Continuation,
-    /// Two arcs meet at an angle.
+    /// Two arcs at an angle.
     L,
-    /// Three, two of which go straight on.
+    /// Three, two of them collinear.
     T,
     /// Three that lie within half a turn.
     Arrow,
@@ -43,9 +44,9 @@ pub enum JunctionForm {
 pub struct JunctionBranch {
     /// The arc.
     pub arc: u32,
-    /// How far along the arc it leaves the junction, in pixels.
+    /// The length along the arc at which it leaves the junction, in pixels.
     pub along: f64,
-    /// Whether the arc runs away from the junction on it.
+    /// Whether the arc's direction is away from the junction.
     pub leaves: bool,
     /// Its direction in the image, in radians, y down.
     pub angle: f64,
@@ -53,10 +54,10 @@ pub struct JunctionBranch {
     pub found: bool,
 }
 
-/// A point at which arcs meet.
+/// A junction of arcs.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct PredictedJunction {
-    /// Its place in pixels.
+    /// Its position in pixels.
     pub at: [f64; 2],
     /// Its form.
     pub form: JunctionForm,
@@ -65,16 +66,16 @@ pub struct PredictedJunction {
 }
 
 impl PredictedJunction {
-    /// Whether the detector found all branches up to it.
+    /// Whether the detector found all branches up to the junction.
     pub fn is_found(&self) -> bool {
         self.branches.iter().all(|b| b.found)
     }
 }
 
-/// The points at which sections of arcs end.
+/// The nodes: the points at which sections of arcs end.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Their places.
+    /// Their positions.
     pub places: Vec<[f64; 2]>,
     /// By arc: its nodes, at the start, its stops and the end.
     pub of_arcs: Vec<Vec<u32>>,
@@ -190,7 +191,7 @@ fn branch(
         along,
         leaves: way > 0,
         angle: (towards[1] - p[1]).atan2(towards[0] - p[0]),
-        // A branch that is left in the middle of a fragment is found, too.
+        // A branch that leaves in the middle of a fragment is found, too.
         found: found
             .fragments
             .iter()
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_are_told_by_angles() {
+    fn angles_determine_forms() {
         assert_eq!(of(&[10.0]), JunctionForm::End);
         assert_eq!(of(&[-175.0, 0.0]), JunctionForm::Continuation);
         assert_eq!(of(&[-90.0, 0.0]), JunctionForm::L);

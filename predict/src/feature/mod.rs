@@ -1,4 +1,4 @@
-//! Features of an image: arcs with what a detector finds of them, and what they are grouped to.
+//! Features of an image: arcs with their detections, and groups of arcs.
 
 pub mod arc_raster;
 pub mod contrast;
@@ -15,7 +15,7 @@ use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When an arc counts as found.
+/// The criteria by which an arc counts as found.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Criteria {
@@ -23,9 +23,9 @@ pub struct Criteria {
     pub whole: f64,
     /// The share that has to be found for it not to be missed.
     pub least: f64,
-    /// How far from an arc an edge pixel may be to be of it, in pixels.
+    /// The greatest distance of an edge pixel from its arc, in pixels.
     pub reach: f64,
-    /// Of how many draws of the noise the probabilities are told, where there is noise.
+    /// The number of noise draws from which the probabilities are estimated, where there is noise.
     pub draws: u32,
 }
 
@@ -41,7 +41,7 @@ impl Default for Criteria {
 }
 
 impl Criteria {
-    /// Whether the values are in their ranges.
+    /// Checks that the values are in their ranges.
     pub fn validate(&self) -> Result<(), SetupError> {
         let shares = 0.0 < self.least && self.least <= self.whole && self.whole <= 1.0;
         if !shares {

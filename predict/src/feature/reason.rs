@@ -13,11 +13,11 @@ use std::fmt;
 pub enum Reason {
     /// It does not lie in the image.
     OutOfImage,
-    /// It is shorter than what the detector keeps.
+    /// It is shorter than the shortest segment that the detector keeps.
     Short {
-        /// How long it is, in pixels.
+        /// Its length, in pixels.
         length: f64,
-        /// What the detector keeps, in pixels.
+        /// The least length that the detector keeps, in pixels.
         needed: f64,
     },
     /// No light reaches either side.
@@ -25,13 +25,13 @@ pub enum Reason {
         /// The brighter side's level.
         level: f64,
     },
-    /// Both sides are as bright as the sensor tells.
+    /// Both sides are at the top level of the sensor.
     Saturated,
-    /// The sides are too much alike.
+    /// The contrast of the sides is too low.
     LowContrast {
         /// The greatest difference of the levels where it is not found.
         contrast: f64,
-        /// The difference that the detector's threshold takes.
+        /// The difference that the detector's threshold needs.
         needed: f64,
     },
     /// Another arc next to it is found in its place.
@@ -40,7 +40,7 @@ pub enum Reason {
         /// Which.
         by: u32,
     },
-    /// There is contrast enough, but thinning or linking leaves nothing of it.
+    /// The contrast suffices, but thinning or linking removes it.
     Lost {
         /// The least difference of the levels where it is not found.
         contrast: f64,
@@ -73,7 +73,7 @@ impl fmt::Display for Reason {
     }
 }
 
-/// What reasons are told by.
+/// The quantities that determine reasons.
 #[derive(Clone, Copy, Debug)]
 pub struct Measure {
     /// The sensor's top level.
@@ -82,7 +82,7 @@ pub struct Measure {
     pub needed: f64,
     /// The length in pixels that the detector keeps.
     pub shortest: f64,
-    /// How far the mask and the thinning look, in pixels.
+    /// The radius of the mask and the thinning, in pixels.
     pub radius: usize,
 }
 
@@ -135,7 +135,7 @@ pub fn reason(
     if let Some(by) = crowd(arc, evidence, ink, measure.radius as i64 + 1) {
         return Some(Reason::CloseNeighbour { by });
     }
-    // Where a part of it is too weak that is why it is broken.
+    // Where a part of it is too weak, that is the reason for the gap.
     let least = differences().fold(f64::INFINITY, f64::min);
     Some(match least < measure.needed {
         true => Reason::LowContrast {
@@ -146,7 +146,7 @@ pub fn reason(
     })
 }
 
-/// The arc that is found next to most of an arc.
+/// The arc that is found next to the greater part of an arc.
 fn crowd(arc: usize, evidence: &[DetectedArc], ink: &ArcRaster, within: i64) -> Option<u32> {
     let own = &ink.pixels[ink.ranges[arc].clone()];
     let mut counts: Vec<(u32, usize)> = Vec::new();

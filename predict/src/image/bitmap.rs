@@ -14,7 +14,7 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
-    /// No pixel of an image of this size.
+    /// The empty set of an image of this size.
     pub fn new([width, height]: [usize; 2]) -> Self {
         let words = width.div_ceil(64);
         Self {
@@ -34,12 +34,13 @@ impl Bitmap {
         }
     }
 
-    /// Whether it holds a pixel.
+    /// Whether it contains a pixel.
     pub fn contains(&self, x: usize, y: usize) -> bool {
         self.bits[y * self.words + x / 64] >> (x % 64) & 1 == 1
     }
 
-    /// All pixels with one of the set in the square of 2 `by` + 1 pixels a side around them.
+    /// The dilation: all pixels with one of the set in the square of 2 `by` + 1 pixels a side
+    /// around them.
     pub fn grown(&self, by: usize) -> Self {
         let mut wide = self.clone();
         for row in wide.bits.chunks_mut(self.words.max(1)) {
@@ -58,7 +59,7 @@ impl Bitmap {
         grown
     }
 
-    /// Takes out what is beyond the width.
+    /// Clears the bits beyond the width.
     fn trim(&mut self) {
         let over = self.words * 64 - self.width;
         if over == 0 {
@@ -92,13 +93,13 @@ impl Bitmap {
         runs
     }
 
-    /// The same as a domain.
+    /// Converts it to a domain.
     pub fn domain(&self) -> PixelMask {
         PixelMask::of_rows(self.width, (0..self.height).map(|y| self.runs(y)))
     }
 }
 
-/// Sets every bit with one set within `by` places.
+/// Sets every bit that has a set one within `by` positions.
 fn spread(row: &mut [u64], by: usize) {
     let mut left = by;
     let mut reach = 1;

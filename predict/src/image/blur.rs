@@ -3,7 +3,7 @@
 use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 
-/// How many standard deviations of the point spread count.
+/// The truncation of the point spread, in standard deviations.
 const WIDE: f64 = 3.0;
 
 /// How many pixels on each side the point spread reaches.
@@ -19,20 +19,20 @@ fn weights(sigma: f64) -> Vec<f32> {
     (0..=half).map(|k| (value(k) / sum) as f32).collect()
 }
 
-/// Blurs the known pixels of an image. What is blurred right is the domain less [`reach`], and what is
-/// beyond the image is taken to be as its nearest pixel.
+/// Blurs the known pixels of an image. The result is valid in the domain eroded by [`reach`].
+/// Pixels beyond the image equal the nearest pixel of it.
 pub fn blur(image: &mut Grey, domain: &PixelMask, sigma: f64) {
     blur_by(image, domain, sigma, &mut Vec::new());
 }
 
-/// The same with memory that is used again.
+/// Blurs with reused memory.
 pub fn blur_by(image: &mut Grey, domain: &PixelMask, sigma: f64, across: &mut Vec<f32>) {
     if reach(sigma) == 0 {
         return;
     }
     let weights = weights(sigma);
     let (width, height) = (image.width, image.height);
-    // What is blurred across is kept next to, and blurred down from there.
+    // The rows are blurred into `across`, and the columns from there.
     across.resize(image.levels.len(), 0.0);
     let wide = grown_rows(domain, reach(sigma));
     for (y, runs) in wide.iter().enumerate() {
@@ -62,7 +62,7 @@ pub fn blur_by(image: &mut Grey, domain: &PixelMask, sigma: f64, across: &mut Ve
 fn blur_run(row: &[f32], run: &Range<u32>, weights: &[f32], out: &mut [f32]) {
     let reach = weights.len() - 1;
     let (start, end) = (run.start as usize, run.end as usize);
-    // Next to the ends of the row the nearest pixel stands for what is beyond.
+    // Near the ends of the row the nearest pixel replaces those beyond.
     let inner = start.max(reach)..end.min(row.len().saturating_sub(reach));
     let beside = (start..end).filter(|x| !inner.contains(x));
     for x in beside {
@@ -94,7 +94,7 @@ fn add(out: &mut [f32], a: &[f32], b: &[f32], weight: f32) {
     }
 }
 
-/// By row: the columns that the domain has within so many rows.
+/// By row: the columns of the domain within a number of rows.
 fn grown_rows(domain: &PixelMask, by: usize) -> Vec<Vec<Range<u32>>> {
     let height = domain.height();
     let near = |y: usize| y.saturating_sub(by)..(y + by + 1).min(height);

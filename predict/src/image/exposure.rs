@@ -1,5 +1,5 @@
-//! Grey levels of pixels, from what each of them shows: the lines that cross it tell how much of it is
-//! of which region, and each region is shaded where the pixel shows it.
+//! The grey levels of pixels from the regions in each. The scanlines through a pixel determine the
+//! area of each region in it, and each region is shaded at the centre of its area.
 
 use super::field::Field;
 use super::shading::Shading;
@@ -8,20 +8,21 @@ use crate::image_arcs::{Region, Regions};
 use premio_detect::{Grey, PixelMask};
 use std::ops::Range;
 
-/// How many pixels apart the light of one region is computed, where it runs straight in between.
+/// The spacing, in pixels, at which the light of one region is computed, where it is linear in
+/// between.
 const KNOTS: u32 = 8;
-/// How far from a straight course it may be, in grey levels.
+/// The greatest deviation from linearity, in grey levels.
 const STRAIGHT: f64 = 1.0 / 16.0;
 
-/// The pixel's part of a line.
+/// The share of a pixel that one scanline represents.
 const SHARE: f64 = 1.0 / LINES as f64;
 
-/// What of a pixel one region fills.
+/// The area of one region in a pixel.
 #[derive(Clone, Copy, Debug)]
 struct Share {
     region: u32,
     area: f64,
-    /// The area's moments: over the area its centre.
+    /// The area's first moments: divided by the area they give its centre.
     moment: [f64; 2],
 }
 
@@ -41,7 +42,7 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
             row.seek(span.start);
             let mut x = span.start;
             while x < span.end {
-                // Up to here all lines are in one region each.
+                // Up to here each scanline stays in one region.
                 match row.unambiguous(x) {
                     (until, Some(region)) if until > x => {
                         let run = x..until.min(span.end);
@@ -49,8 +50,8 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
                         light.shade(region, run, y, levels);
                     }
                     _ => {
-                        let told = |r: u32| regions.all[r as usize].seen.is_some();
-                        row.shares(x, y, told, &mut shares);
+                        let is_known = |r: u32| regions.all[r as usize].seen.is_some();
+                        row.shares(x, y, is_known, &mut shares);
                         let part = |share: &Share| {
                             let at = share.moment.map(|m| m / share.area);
                             share.area * light.level(share.region, at)
@@ -64,11 +65,11 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
     }
 }
 
-/// The light of the regions of an image, with what is known of each so far.
+/// The light of the regions of an image, with the state of the evaluation of each.
 struct Light<'s, 'p> {
     shading: &'s Shading<'p>,
     regions: &'s Regions,
-    /// By region: how far the place is that was requested last.
+    /// By region: the distance of the last evaluated point.
     hints: Vec<f64>,
     /// By region: its field, if it is flat.
     fields: Vec<Option<Field>>,
@@ -115,8 +116,8 @@ impl<'s, 'p> Light<'s, 'p> {
     }
 }
 
-/// The levels of a run of pixels of one region: of pieces of it, each by its ends and its middle where
-/// it runs straight, and halved where not.
+/// The levels of a run of pixels of one region: interpolated in pieces between the ends and the
+/// middle where it is linear, and halved where not.
 fn shade(run: Range<u32>, row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
     let mut from = (run.start, level(run.start));
     row[from.0 as usize] = from.1 as f32;
@@ -140,7 +141,8 @@ fn between(from: (u32, f64), to: (u32, f64), row: &mut [f32], level: &mut impl F
     let part = |a: (u32, f64), b: (u32, f64), x: u32| {
         a.1 + (b.1 - a.1) * (f64::from(x - a.0) / f64::from(b.0 - a.0))
     };
-    // A parabola is off its half chords by a quarter of what its middle is off its chord.
+    // A parabola deviates from its half chords by a quarter of the deviation of its middle from its
+    // chord.
     if (part(from, to, x) - middle.1).abs() > 4.0 * STRAIGHT {
         between(from, middle, row, level);
         between(middle, to, row, level);
@@ -153,12 +155,12 @@ fn between(from: (u32, f64), to: (u32, f64), row: &mut [f32], level: &mut impl F
     }
 }
 
-/// The gaps of the lines through a row of pixels.
+/// The gaps of the scanlines through a row of pixels.
 #[derive(Default)]
 struct Row {
-    /// By line: its gaps, each by its end and its region.
+    /// By scanline: its gaps, each with its end and its region.
     gaps: [Vec<(f64, u32)>; LINES],
-    /// By line: the gap that the last pixel began in.
+    /// By scanline: the gap in which the last pixel began.
     at: [usize; LINES],
 }
 
@@ -175,7 +177,7 @@ impl Row {
         self.at = [0; LINES];
     }
 
-    /// Goes on to the gaps in which a pixel begins.
+    /// Advances to the gaps in which a pixel begins.
     fn seek(&mut self, x: u32) {
         let left = f64::from(x) - 0.5;
         for (gaps, at) in self.gaps.iter().zip(&mut self.at) {
@@ -185,7 +187,8 @@ impl Row {
         }
     }
 
-    /// Up to which pixel, from one on, every line stays in its gap; and the one region of all gaps.
+    /// The last pixel, from a given one on, up to which every scanline stays in its gap; and the
+    /// one region of all gaps.
     fn unambiguous(&mut self, x: u32) -> (u32, Option<u32>) {
         self.seek(x);
         let (first, region) = self.gaps[0][self.at[0]];
@@ -199,8 +202,9 @@ impl Row {
         (((end + 0.5).floor().max(0.0) as u32).max(x), same)
     }
 
-    /// What of a pixel is of which region; `told` says whether it is known what is seen in one.
-    fn shares(&self, x: u32, y: usize, told: impl Fn(u32) -> bool, shares: &mut Vec<Share>) {
+    /// The shares of regions in a pixel; `is_known` states whether the content of a region is
+    /// known.
+    fn shares(&self, x: u32, y: usize, is_known: impl Fn(u32) -> bool, shares: &mut Vec<Share>) {
         shares.clear();
         let (left, right) = (f64::from(x) - 0.5, f64::from(x) + 0.5);
         for (k, (gaps, &at)) in self.gaps.iter().zip(&self.at).enumerate() {
@@ -216,9 +220,9 @@ impl Row {
                         area,
                         moment,
                     };
-                    match told(region) {
+                    match is_known(region) {
                         true => add(shares, share),
-                        // What is seen may be another thing on every line.
+                        // The content may differ on every scanline.
                         false => shares.push(share),
                     }
                     from = to;

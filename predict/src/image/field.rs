@@ -1,4 +1,5 @@
-//! The light of flat regions, by the corners of cells where it runs straight between them.
+//! The light of flat regions, interpolated from the corners of cells where it is linear between
+//! them.
 
 use super::shading::Shading;
 use crate::image_arcs::{Region, RegionSample};
@@ -7,10 +8,10 @@ use std::ops::Range;
 
 /// The side of a cell, in pixels.
 const CELL: i64 = 8;
-/// How far the light in the middle of a cell may be from straight, in grey levels.
+/// The greatest deviation of the light in the middle of a cell from linearity, in grey levels.
 const STRAIGHT: f64 = 1.0 / 16.0;
 
-/// What is known of a cell.
+/// The state of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Course {
     Unknown,
@@ -22,7 +23,7 @@ enum Course {
 #[derive(Clone, Debug)]
 pub struct Field {
     seen: RegionSample,
-    /// The place of the first corner, in cells.
+    /// The position of the first corner, in cells.
     first: [i64; 2],
     /// Corners in a row of cells.
     columns: usize,
@@ -95,7 +96,7 @@ impl Field {
         shading.level(at, &self.seen, &mut hint)
     }
 
-    /// The levels at the corners of a cell, by row, if the light runs straight between them.
+    /// The levels at the corners of a cell, by row, if the light is linear between them.
     fn straight(&mut self, shading: &Shading<'_>, place: [i64; 2]) -> Option<[[f64; 2]; 2]> {
         let [i, j] = [0, 1].map(|k| usize::try_from(place[k] - self.first[k]).ok());
         let at = j? * self.columns + i?;
@@ -129,7 +130,7 @@ impl Field {
         let half = 0.5 * CELL as f64;
         let middle = self.exact(shading, [corner(i) + half, corner(j) + half]);
         let mean = self.ends(at).iter().flatten().sum::<f64>() / 4.0;
-        // What is no number is not straight.
+        // NaN is not linear.
         match (mean - middle).abs() <= STRAIGHT {
             true => Course::Straight,
             false => Course::Bent,
@@ -137,12 +138,12 @@ impl Field {
     }
 }
 
-/// The cell that holds a column or a row.
+/// The cell that contains a column or a row.
 fn cell(x: f64) -> i64 {
     ((x + 0.5) / CELL as f64).floor() as i64
 }
 
-/// Where a cell begins: at the border of pixels.
+/// The beginning of a cell, at the border of pixels.
 fn corner(cell: i64) -> f64 {
     (cell * CELL) as f64 - 0.5
 }

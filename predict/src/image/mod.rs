@@ -1,4 +1,4 @@
-//! What the sensor makes of the light: radiance, coverage of pixels, blur, noise and grey levels.
+//! The image formation: radiance, coverage of pixels, blur, noise and grey levels.
 
 pub(crate) mod bitmap;
 pub(crate) mod blur;

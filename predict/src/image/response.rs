@@ -4,8 +4,8 @@ use crate::setup::sensor::Sensor;
 use crate::statistics::Random;
 use premio_detect::{Grey, PixelMask};
 
-/// Turns levels into what the sensor tells: for a seed the noise of a pixel is the same whichever
-/// other pixels are requested.
+/// Converts levels into the sensor's output. For a seed the noise of a pixel does not depend on
+/// which other pixels are requested.
 pub fn respond(image: &mut Grey, domain: &PixelMask, sensor: &Sensor, seed: u64) {
     let top = f64::from(sensor.levels - 1);
     let noisy = sensor.electrons > 0.0 || sensor.read_noise > 0.0;

@@ -11,7 +11,7 @@ use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use std::f64::consts::PI;
 
-/// Which material each of a part's faces is of.
+/// The materials of a part's faces.
 #[derive(Clone, Debug)]
 pub struct Finishes {
     /// By face: an index into [`Conditions::materials`].
@@ -19,7 +19,7 @@ pub struct Finishes {
 }
 
 impl Finishes {
-    /// The materials that conditions give the faces of a part.
+    /// The materials of the faces of a part under conditions.
     pub fn new(subject: &PreparedPart<'_>, conditions: &Conditions) -> Result<Self, StageError> {
         let count = subject.brep.topology.faces.len();
         let mut by_face = vec![0; count];
@@ -37,11 +37,11 @@ impl Finishes {
     }
 }
 
-/// A light as it shines on the part.
+/// A light with the reflectances of the part under it.
 #[derive(Clone, Debug)]
 struct Beam {
     polarisation: Polarisation,
-    /// By material: what it reflects at the light's wavelength.
+    /// By material: its surface at the light's wavelength.
     surfaces: Vec<SurfaceFinish>,
 }
 
@@ -57,16 +57,16 @@ impl Beam {
     }
 }
 
-/// What a point sends to the camera.
+/// The radiance from a point to the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Radiance {
     /// All of it, I^r.
     pub total: f64,
-    /// What of it lights are mirrored with.
+    /// The specular part of it.
     pub specular: f64,
 }
 
-/// The light of a stage, in grey levels of the sensor before noise and steps.
+/// The light of a scene, in grey levels of the sensor before noise and steps.
 #[derive(Debug)]
 pub struct Shading<'s> {
     stage: &'s LitScene<'s>,
@@ -78,12 +78,12 @@ pub struct Shading<'s> {
     gain: f64,
     /// By light.
     beams: Vec<Beam>,
-    /// By material: what of it is the same at every wavelength.
+    /// By material: the parts of its surface that do not depend on the wavelength.
     surfaces: Vec<SurfaceFinish>,
 }
 
 impl<'s> Shading<'s> {
-    /// The light of a stage under conditions.
+    /// The light of a scene under conditions.
     pub fn new(
         stage: &'s LitScene<'s>,
         finishes: &'s Finishes,
@@ -111,7 +111,8 @@ impl<'s> Shading<'s> {
         })
     }
 
-    /// What a point of a face sends towards `viewer`, a unit vector, where lights of `lit` reach it.
+    /// The radiance of a point of a face towards `viewer`, a unit vector, where the lights of `lit`
+    /// reach it.
     pub fn radiance(
         &self,
         face: FaceId,
@@ -144,8 +145,8 @@ impl<'s> Shading<'s> {
         all
     }
 
-    /// The place of a face that is seen at a point of the image, with the direction it is seen in.
-    /// `hint` is how far it is about, and becomes how far it is.
+    /// The point of a face that is visible at a point of the image, with the viewing direction.
+    /// `hint` is its approximate distance, and becomes the exact one.
     pub fn place(
         &self,
         at: [f64; 2],
@@ -164,7 +165,7 @@ impl<'s> Shading<'s> {
         self.levels(at, seen, hint).total
     }
 
-    /// The same, with what of it lights are mirrored with.
+    /// The grey levels with their specular part.
     pub fn levels(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> Radiance {
         let placed = seen
             .face
@@ -182,7 +183,7 @@ impl<'s> Shading<'s> {
             }
         };
         let cosine = into.dot(&self.stage.view.scene.projection.axis());
-        // C over its value on the optical axis, which the exposure is set by.
+        // C relative to its value on the optical axis, at which the exposure is set.
         let gain = self.gain * (cosine * cosine) * (cosine * cosine);
         Radiance {
             total: gain * radiance.total,
@@ -190,7 +191,7 @@ impl<'s> Shading<'s> {
         }
     }
 
-    /// How many lights there are.
+    /// The number of lights.
     pub fn lights(&self) -> usize {
         self.stage.lights.len()
     }
@@ -200,13 +201,13 @@ impl<'s> Shading<'s> {
         self.stage.subject.brep.surface(face)
     }
 
-    /// Whether a face mirrors anything.
+    /// Whether a face has specular reflection.
     pub fn mirrors(&self, face: FaceId) -> bool {
         self.surfaces[self.finishes.by_face[face.index()]].is_specular()
     }
 
-    /// N·H at the place of a face that is seen at a point of the image: one where the light is
-    /// mirrored. None where the light is behind the face.
+    /// N·H at the point of a face that is visible at a point of the image: 1 at perfect specular
+    /// reflection. None where the light is behind the face.
     pub fn mirrored(
         &self,
         at: [f64; 2],
@@ -221,12 +222,13 @@ impl<'s> Shading<'s> {
         (normal.dot(&towards) > 0.0).then(|| normal.dot(&between) / between.norm())
     }
 
-    /// How far a point is from where its line of sight starts.
+    /// The distance of a point from the start of its line of sight.
     pub fn distance(&self, p: &Point3<f64>) -> f64 {
         (p - self.stage.view.scene.projection.origin()).norm()
     }
 
-    /// What a line of sight through a point of the image meets, and which lights reach it.
+    /// The face on the line of sight through a point of the image, and the lights that reach it
+    /// there.
     pub fn cast(&self, at: [f64; 2]) -> RegionSample {
         let Some((face, point)) = self.stage.seen(at) else {
             return RegionSample {

@@ -20,7 +20,7 @@ pub enum ArcSource {
     Limb {
         /// The face.
         face: u32,
-        /// Which of its limbs, in the order of the contours.
+        /// The index of the limb of the face, in the order of the contours.
         ordinal: u32,
     },
     /// The boundary of a shadow that an edge casts on a face.
@@ -32,7 +32,7 @@ pub enum ArcSource {
         /// The face it falls on.
         face: u32,
     },
-    /// The boundary of a shadow that a limb, as the light sees it, casts on a face.
+    /// The boundary of a shadow that a limb of the light's view casts on a face.
     LimbShadow {
         /// The light.
         light: u32,
@@ -43,8 +43,8 @@ pub enum ArcSource {
         /// The face it falls on.
         face: u32,
     },
-    /// Where a face turns away from a light: its limb, as the light sees it. The brightness does not
-    /// jump there, but what is beyond is as dark as a shadow.
+    /// Where a face turns away from a light: its limb in the light's view. The brightness is
+    /// continuous there, but beyond it the face is as dark as in a shadow.
     Terminator {
         /// The light.
         light: u32,
@@ -55,7 +55,7 @@ pub enum ArcSource {
     },
     /// The outline of a highlight on a face.
     Highlight {
-        /// The light that it mirrors.
+        /// The light that it reflects.
         light: u32,
         /// The face.
         face: u32,
@@ -63,7 +63,7 @@ pub enum ArcSource {
 }
 
 impl ArcSource {
-    /// The edge of the part, of its image or of its shadow.
+    /// The edge of the part that the arc or its shadow is of.
     pub fn edge(&self) -> Option<EdgeId> {
         match *self {
             Self::Edge { edge } | Self::EdgeShadow { edge, .. } => Some(EdgeId(edge)),
@@ -71,7 +71,7 @@ impl ArcSource {
         }
     }
 
-    /// The face that it is a limb of, or that it lies on.
+    /// The face whose limb it is, or on which it lies.
     pub fn face(&self) -> Option<FaceId> {
         match *self {
             Self::Limb { face, .. } => Some(FaceId(face)),
@@ -79,7 +79,7 @@ impl ArcSource {
         }
     }
 
-    /// The face whose limb casts it, of a shadow.
+    /// For a shadow: the face whose limb casts it.
     pub fn caster(&self) -> Option<FaceId> {
         match *self {
             Self::LimbShadow { caster, .. } => Some(FaceId(caster)),
@@ -98,7 +98,7 @@ impl ArcSource {
         }
     }
 
-    /// The face that it lies on, where it is none of its boundary.
+    /// The face in whose inside it lies.
     pub fn ground(&self) -> Option<FaceId> {
         match *self {
             Self::EdgeShadow { face, .. }
@@ -109,7 +109,7 @@ impl ArcSource {
         }
     }
 
-    /// The word for it.
+    /// Its word in reports.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Edge { .. } => "edge",
@@ -124,26 +124,26 @@ impl ArcSource {
 /// An arc: a visible piece of a contour or of a shadow's boundary, or a highlight's outline.
 #[derive(Clone, Debug)]
 pub struct PredictedArc {
-    /// What it is the image of.
+    /// Its source.
     pub source: ArcSource,
-    /// The contour of the view that it is a piece of.
+    /// The contour of the view from which it is cut.
     pub contour: Option<u32>,
-    /// Whether neither the normal nor the light jumps across it, so that nothing is seen of it.
+    /// Whether normal and light are continuous across it, so that it is invisible.
     pub smooth: bool,
-    /// The line that it is in the image exactly, a x + b y + c = 0, or the conic: 3 or 6 coefficients;
-    /// none where it is neither, or not known to be.
+    /// The coefficients of its exact image: 3 of a line a x + b y + c = 0, or 6 of a conic; empty
+    /// where it is neither, or not known to be.
     pub coefficients: Vec<f64>,
     /// Its image, with the parameters of the curve in space.
     pub line: Polyline,
     /// Where other arcs end on it: indices of its polyline's points, increasing.
     pub stops: Vec<usize>,
-    /// Of a shadow's boundary, which side is lit.
+    /// For a shadow's boundary: the lit side.
     pub shade: Option<Shade>,
-    /// Of a highlight's outline, the region that it lies in.
+    /// For a highlight's outline: the region that contains it.
     pub within: Option<u32>,
 }
 
-/// Which side of a shadow's boundary a light reaches.
+/// The side of a shadow's boundary that a light reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shade {
     /// The light.
@@ -155,7 +155,7 @@ pub struct Shade {
 /// A side of a curve in an image whose y points down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArcSide {
-    /// To the left as it runs.
+    /// To the left along its direction.
     Left,
     /// To the right.
     Right,
@@ -165,7 +165,7 @@ impl ArcSide {
     /// The side of the line from `a` to `b` that `p` is on.
     pub fn new(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Self {
         let cross = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        // With y down what is to the right turns clockwise on the page, and that is positive.
+        // With y down a point on the right turns clockwise on the page, which is positive.
         if cross > 0.0 { Self::Right } else { Self::Left }
     }
 

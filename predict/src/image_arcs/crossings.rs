@@ -5,12 +5,12 @@ use super::flatten::Polyline;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, Envelope, RTree};
 
-/// A place on a polyline: a segment, and the part of it.
+/// A point of a polyline: a segment, and the fraction along it.
 pub type ArcPoint = (usize, f64);
 
 type Leaf = GeomWithData<Rectangle<[f64; 2]>, u32>;
 
-/// The polylines of arcs, each found by its box.
+/// The polylines of arcs, indexed by their boxes.
 #[derive(Debug)]
 pub struct Lines {
     tree: RTree<Leaf>,
@@ -31,7 +31,7 @@ impl Lines {
         }
     }
 
-    /// Where they cross another one, each with the arc that does.
+    /// The crossings with another polyline, each with the arc that crosses.
     pub fn crossings(&self, line: &Polyline) -> Vec<(ArcPoint, Option<u32>)> {
         let mut found = Vec::new();
         let hull = AABB::from_points(&line.points);
@@ -48,7 +48,7 @@ impl Lines {
                 }
             }
         }
-        // In an order that is not the tree's.
+        // In an order that does not depend on the tree.
         found.sort_by(|a, b| {
             (a.0.0, a.1)
                 .cmp(&(b.0.0, b.1))
@@ -58,7 +58,7 @@ impl Lines {
     }
 }
 
-/// The part of the first segment at which the second one crosses it.
+/// The fraction along the first segment at which the second one crosses it.
 pub fn crossing([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<f64> {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
     let w = [c[0] - a[0], c[1] - a[1]];

@@ -2,12 +2,12 @@
 
 use nalgebra::{Point2, Point3};
 
-/// How far a polyline may be off its curve, in pixels: what a pixel mixes of both sides is then right
-/// to a percent.
+/// The greatest distance of a polyline from its curve, in pixels: the mixture of both sides in a
+/// pixel is then correct to one percent.
 pub const FINE: f64 = 1.0 / 64.0;
-/// Where a curve is looked at besides its middle, as a part of its range.
+/// The fraction of a range at which a curve is tested besides its middle.
 const ASIDE: f64 = 0.21;
-/// How often a range is halved at the most.
+/// The most times that a range is halved.
 const DEEPEST: u32 = 14;
 
 /// A polyline in the image.
@@ -40,17 +40,17 @@ impl ImageWindow {
         }
     }
 
-    /// Whether the box of two points, grown by `by`, meets it.
+    /// Whether the box of two points, grown by `by`, intersects it.
     fn intersects(&self, a: &[f64; 2], b: &[f64; 2], by: f64) -> bool {
         (0..2).all(|i| a[i].min(b[i]) - by <= self.max[i] && a[i].max(b[i]) + by >= self.min[i])
     }
 }
 
-/// A point of a curve in space, seen: its image in pixels and its depth.
+/// The projection of a point of a curve: its image in pixels and its depth.
 pub type Shown = (Point2<f64>, f64);
 
-/// The image of `curve` over a range. A straight one is two points; another is halved until it is
-/// within `fine` in the window. None where a point of it is not seen.
+/// The image of `curve` over a range. A straight one has two points; another is halved until it is
+/// within `fine` in the window. None where a point of it cannot be projected.
 pub fn flatten(
     curve: impl Fn(f64) -> Option<Shown>,
     [from, to]: [f64; 2],
@@ -78,7 +78,7 @@ pub fn flatten(
     Some(line)
 }
 
-/// Adds the points between two of a curve that it takes to be fine.
+/// Adds the points between two of a curve that are needed to be within `fine`.
 fn halve(
     curve: &impl Fn(f64) -> Option<Shown>,
     [a, b]: [(f64, Shown); 2],
@@ -96,7 +96,7 @@ fn halve(
     let off = |r: &Point2<f64>| off_chord(&[p.x, p.y], &[q.x, q.y], &[r.x, r.y]);
     let mut bend = off(&middle.0);
     if bend <= fine {
-        // Where it bends one way and then the other its middle lies on its chord.
+        // A curve with an inflection may have its middle on its chord.
         bend = bend.max(off(&curve(at(ASIDE))?.0));
     }
     let is_near = window.intersects(&[p.x, p.y], &[q.x, q.y], 4.0 * bend);
@@ -117,7 +117,8 @@ pub fn off_chord(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> f64 {
     (p[0] - at[0]).hypot(p[1] - at[1])
 }
 
-/// Where on a segment the point nearest to `p` is, from 0 to 1, with its squared distance.
+/// The fraction along a segment of the point nearest to `p`, from 0 to 1, with its squared
+/// distance.
 pub fn nearest_on(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> (f64, f64) {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
@@ -161,7 +162,7 @@ impl Polyline {
             .sum()
     }
 
-    /// The parameter at a part `s` of the segment `i`: the image of equal steps in space is shorter
+    /// The parameter at a fraction `s` of the segment `i`: equal steps in space have shorter images
     /// the deeper they are.
     pub fn parameter(&self, i: usize, s: f64) -> f64 {
         let [z0, z1] = [self.depths[i], self.depths[i + 1]];
@@ -173,13 +174,14 @@ impl Polyline {
         }
     }
 
-    /// The point at a part `s` of the segment `i`.
+    /// The point at a fraction `s` of the segment `i`.
     pub fn at(&self, i: usize, s: f64) -> [f64; 2] {
         let [a, b] = [self.points[i], self.points[i + 1]];
         [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
     }
 
-    /// The segment and the part of it at a length along it, in pixels; the end beyond.
+    /// The segment and the fraction of it at a length along the polyline, in pixels; the end
+    /// beyond.
     pub fn place_at(&self, along: f64) -> (usize, f64) {
         let mut left = along.max(0.0);
         for (i, [a, b]) in self.segments() {
@@ -204,7 +206,7 @@ impl Polyline {
         self.at(i, s)
     }
 
-    /// The segment nearest to a point and the part of it, with the squared distance.
+    /// The segment nearest to a point and the fraction of it, with the squared distance.
     pub fn nearest(&self, p: &[f64; 2]) -> Option<(usize, f64, f64)> {
         let mut best: Option<(usize, f64, f64)> = None;
         for (i, [a, b]) in self.segments() {
@@ -216,7 +218,7 @@ impl Polyline {
         best
     }
 
-    /// Puts a point of the curve into the segment `i`, at a part `s` of it.
+    /// Inserts a point of the curve into the segment `i`, at a fraction `s` of it.
     pub fn insert(&mut self, i: usize, s: f64, p: [f64; 2]) {
         let t = self.parameter(i, s);
         let depth = 1.0 / ((1.0 - s) / self.depths[i] + s / self.depths[i + 1]);
@@ -225,7 +227,7 @@ impl Polyline {
         self.depths.insert(i + 1, depth);
     }
 
-    /// The part from one place to another, each a segment with a part of it.
+    /// The part from one point to another, each a segment with a fraction of it.
     pub fn part(&self, from: (usize, f64), to: (usize, f64)) -> Self {
         let mut part = Self::default();
         let depth =
@@ -245,7 +247,7 @@ impl Polyline {
         part
     }
 
-    /// The point at the middle of its length, as a segment and a part of it.
+    /// The point at half its length, as a segment and a fraction of it.
     pub fn middle(&self) -> Option<(usize, f64)> {
         let mut left = 0.5 * self.length();
         for (i, [a, b]) in self.segments() {
@@ -259,7 +261,7 @@ impl Polyline {
     }
 }
 
-/// A point in space as a projection shows it.
+/// The projection of a point in space.
 pub fn shown(
     projection: &premio_visibility::camera::projection::Projection,
     p: &Point3<f64>,

@@ -1,4 +1,5 @@
-//! Outlines of highlights: where what a face mirrors of a light is half as bright as at its brightest.
+//! Outlines of highlights: where the specular reflection of a light in a face has half its greatest
+//! brightness.
 
 use super::arc::{ArcSource, PredictedArc};
 use super::flatten::Polyline;
@@ -8,18 +9,18 @@ use crate::setup::Conditions;
 use premio_kernel::brep::topology::FaceId;
 use std::f64::consts::TAU;
 
-/// How far apart the points are, in pixels, from which the brightest one is sought.
+/// The spacing, in pixels, of the start points of the search for the brightest one.
 const EVERY: usize = 8;
-/// In how many directions the outline is looked for.
+/// The number of directions in which the outline is searched.
 const DIRECTIONS: usize = 96;
-/// The least brightness of a highlight, in grey levels: what a threshold may tell from nothing.
+/// The least brightness of a highlight, in grey levels, that a threshold can detect.
 const FAINT: f64 = 4.0;
 
-/// So far from its brightest point, in pixels, an outline is not looked for: outside the image regions
-/// have no end.
+/// The greatest distance of an outline from its brightest point, in pixels: outside the image
+/// regions are unbounded.
 const FURTHEST: f64 = 1_048_576.0;
 
-/// The point of a region at which a light is mirrored best.
+/// The point of a region with the strongest specular reflection of a light.
 #[derive(Clone, Copy, Debug)]
 struct Peak {
     at: [f64; 2],
@@ -76,7 +77,7 @@ pub fn add_highlights(
     }
 }
 
-/// By region and light: the point of a lattice at which the light is mirrored best.
+/// By region and light: the point of a lattice with the strongest specular reflection.
 fn peaks(
     shading: &Shading<'_>,
     regions: &Regions,
@@ -114,7 +115,7 @@ fn peaks(
     peaks
 }
 
-/// A light mirrored in a region.
+/// The reflection of a light in a region.
 struct Glow<'s, 'p> {
     shading: &'s Shading<'p>,
     regions: &'s Regions,
@@ -127,8 +128,8 @@ struct Glow<'s, 'p> {
 }
 
 impl Glow<'_, '_> {
-    /// Whether a point is in the image or no farther from it than the image is wide and high: outside the
-    /// image regions have no end.
+    /// Whether a point is in the image or within its width and height of it: outside the image
+    /// regions are unbounded.
     fn is_near(&self, at: [f64; 2]) -> bool {
         at.iter().zip(self.resolution).all(|(x, n)| {
             let n = n as f64;
@@ -140,13 +141,13 @@ impl Glow<'_, '_> {
         self.regions.at(at) == self.region
     }
 
-    /// The grey levels that the light is mirrored with.
+    /// The specular reflection of the light, in grey levels.
     fn level(&self, at: [f64; 2]) -> f64 {
         let mut hint = self.shading.distance(&self.seen.point);
         self.shading.levels(at, &self.seen, &mut hint).specular
     }
 
-    /// The brightest point, from one next to it.
+    /// The brightest point, from one near it.
     fn brightest(&self, peak: Peak) -> Peak {
         let mut best = peak;
         let mut step = 0.5 * EVERY as f64;
@@ -172,7 +173,7 @@ impl Glow<'_, '_> {
         best
     }
 
-    /// The outlines: one that is closed, or those parts of it that lie in the region.
+    /// The outlines: a closed one, or the parts of it that lie in the region.
     fn outlines(&self, peak: Peak) -> Vec<Polyline> {
         let peak = self.brightest(peak);
         let brightness = self.level(peak.at);
@@ -192,7 +193,7 @@ impl Glow<'_, '_> {
         let mut lines = Vec::new();
         let mut run = Polyline::default();
         let whole = points.iter().all(Option::is_some);
-        // From a gap on, so that no run is cut where the count starts.
+        // Starts at a gap, so that no run is cut at the start.
         let start = points.iter().position(Option::is_none).unwrap_or(0);
         for k in 0..DIRECTIONS + usize::from(whole) {
             let i = (start + k) % DIRECTIONS;
@@ -206,7 +207,7 @@ impl Glow<'_, '_> {
         lines
     }
 
-    /// Where the level falls below `least` in a direction, if that is in the region.
+    /// The point where the level falls below `least` in a direction, if it is in the region.
     fn edge(&self, from: [f64; 2], angle: f64, least: f64) -> Option<[f64; 2]> {
         let (sin, cos) = angle.sin_cos();
         let at = |far: f64| [from[0] + far * cos, from[1] + far * sin];

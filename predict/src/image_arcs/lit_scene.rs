@@ -1,4 +1,4 @@
-//! A part under its lights, before a camera: the views of all of them.
+//! The lit scene: a part in front of a camera and under its lights, with the views of all of them.
 
 use super::arc::{ArcSource, PredictedArc};
 use super::flatten::{FINE, ImageWindow, flatten, shown};
@@ -37,7 +37,7 @@ pub enum StageError {
 }
 
 impl StageError {
-    /// What is wrong with the setup, with the key that it is about.
+    /// The error of the setup with its key.
     pub fn setup_error(&self) -> Option<SetupError> {
         match self {
             Self::Setup(error) => Some(error.clone()),
@@ -57,7 +57,7 @@ impl StageError {
 pub struct Eye {
     /// The camera.
     pub camera: ViewCamera,
-    /// How it projects.
+    /// Its projection.
     pub projection: Projection,
 }
 
@@ -68,8 +68,8 @@ impl Eye {
     }
 }
 
-/// The eyes of a setup: the camera's, and those of the lights. A light within the ball about the part
-/// looks both ways.
+/// The eyes of a setup: the camera's, and those of the lights. A light within the bounding ball of
+/// the part has two eyes, which look in opposite directions.
 #[derive(Clone, Debug)]
 pub struct Eyes {
     /// The camera's matrices.
@@ -114,10 +114,11 @@ impl Eyes {
     }
 }
 
-/// What is wrong with an eye or a light in the part.
+/// The error of an eye or a light in the part.
 const INSIDE: &str = "is inside the part: expected a point outside";
 
-/// That a camera or a light sees nothing of the part, about its place where that is the reason.
+/// The error of a camera or a light that sees nothing of the part, at the key of its position where
+/// that is the reason.
 fn no_view(table: &str, place: &str, error: &ViewError) -> SetupError {
     let key = format!("{table}.{place}");
     match error {
@@ -154,7 +155,7 @@ fn upright(d: &Vector3<f64>) -> Vector3<f64> {
     Vector3::ith(d.abs().imin(), 1.0)
 }
 
-/// What one eye sees, with the boundary ready for its lines of sight.
+/// The view of one eye, with the boundary prepared for its lines of sight.
 #[derive(Debug)]
 pub struct Sightings<'a> {
     /// The contours.
@@ -163,7 +164,7 @@ pub struct Sightings<'a> {
     pub scene: Scene<'a>,
 }
 
-/// A part before its camera and under its lights.
+/// A part in front of its camera and under its lights.
 #[derive(Debug)]
 pub struct LitScene<'a> {
     /// The part.
@@ -172,9 +173,9 @@ pub struct LitScene<'a> {
     pub matrices: Matrices,
     /// The camera's view.
     pub view: Sightings<'a>,
-    /// By light: its source, and what it sees.
+    /// By light: its source, and its views.
     pub lights: Vec<(light::LightSource, Vec<Sightings<'a>>)>,
-    /// By contour: of limbs, which limb of its face it is.
+    /// By contour: the index of a limb among those of its face.
     ordinals: Vec<u32>,
 }
 
@@ -208,8 +209,8 @@ impl<'a> LitScene<'a> {
         self.view.arcs(&self.ordinals, FINE, window)
     }
 
-    /// Whether a light is so near to the camera that shadows stay behind what casts them: all that is
-    /// seen is lit, within what polylines are drawn to.
+    /// Whether a light is so near to the camera that every visible point is lit, within the
+    /// accuracy of polylines: shadows are hidden behind their casters.
     pub fn is_next_to_camera(&self, light: usize) -> bool {
         let LightPlace::Near(source) = self.lights[light].0.place() else {
             return false;
@@ -238,15 +239,15 @@ impl<'a> LitScene<'a> {
             .is_some_and(|v| !v.scene.is_hidden(p, &own))
     }
 
-    /// The face that is seen at a point of the image, and where on it.
+    /// The face that is visible at a point of the image, and the point of it.
     pub fn seen(&self, at: [f64; 2]) -> Option<(FaceId, Point3<f64>)> {
         self.view.scene.nearest(&Point2::from(at))
     }
 }
 
 impl Sightings<'_> {
-    /// The visible pieces of the contours, cut where others end on them, as polylines within `fine`;
-    /// `ordinals` determines which limb of its face each is.
+    /// The visible pieces of the contours, cut where others end on them, as polylines within
+    /// `fine`. `ordinals` gives the index of each limb among those of its face.
     pub fn arcs(&self, ordinals: &[u32], fine: f64, window: &ImageWindow) -> Vec<PredictedArc> {
         let contours = &self.contours;
         let projection = self.scene.projection;
@@ -258,7 +259,7 @@ impl Sightings<'_> {
                 let Some(mut line) = flatten(curve, piece.t, straight, (fine, window)) else {
                     continue;
                 };
-                // Pieces that meet do so in one point, however it was computed.
+                // Pieces with a common end get the same end point, however it was computed.
                 pin(&mut line, contours, piece);
                 arcs.push(PredictedArc {
                     source: source(contour, ordinals[contour.id as usize]),
@@ -277,7 +278,7 @@ impl Sightings<'_> {
     }
 }
 
-/// By contour: which limb of its face it is.
+/// By contour: the index of a limb among those of its face.
 pub fn ordinals(contours: &Contours) -> Vec<u32> {
     let mut count: HashMap<FaceId, u32> = HashMap::new();
     let ordinal = |contour: &Contour| match contour.edge {
@@ -291,7 +292,7 @@ pub fn ordinals(contours: &Contours) -> Vec<u32> {
     contours.contours.iter().map(ordinal).collect()
 }
 
-/// Whether the image of a contour is a straight line, run in one direction.
+/// Whether the image of a contour is a straight line that is traversed in one direction.
 pub fn is_straight(contour: &Contour) -> bool {
     matches!(
         (&contour.curve2, &contour.curve3),
@@ -329,7 +330,7 @@ fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &Contour
     }
 }
 
-/// Puts a point into each arc where another one ends behind it.
+/// Inserts a point into each arc where another one ends behind it.
 fn stop(arcs: &mut [PredictedArc], contours: &Contours) {
     let mut by_contour: HashMap<u32, Vec<usize>> = HashMap::new();
     for (i, arc) in arcs.iter().enumerate() {
@@ -354,7 +355,8 @@ fn stop(arcs: &mut [PredictedArc], contours: &Contours) {
             continue;
         }
         let p = junction.point2;
-        // A limb may pass before itself: then one of its pieces ends here, and another does not.
+        // A limb may pass in front of itself: then one of its pieces ends here, and another does
+        // not.
         let on = by_contour.get(before).into_iter().flatten();
         let passing = on.filter(|&&i| !arcs[i].ends_at(p));
         let found = passing.filter_map(|&i| arcs[i].line.nearest(&p).map(|at| (i, at)));
@@ -365,7 +367,7 @@ fn stop(arcs: &mut [PredictedArc], contours: &Contours) {
     }
 }
 
-/// How near to an arc what ends on it has to be, squared, in pixels.
+/// The greatest squared distance, in square pixels, from an arc of one that ends on it.
 const ON: f64 = 0.25;
 
 impl PredictedArc {
@@ -380,7 +382,8 @@ impl PredictedArc {
         self.is_at(0, p) || self.is_at(self.line.points.len() - 1, p)
     }
 
-    /// Notes that another arc ends at a point of this one, its segment and the part of it given.
+    /// Records that another arc ends at a point of this one, given its segment and the fraction of
+    /// it.
     pub fn stop_at(&mut self, p: [f64; 2], (i, s, square): (usize, f64, f64)) {
         if square > ON || self.ends_at(p) {
             return;

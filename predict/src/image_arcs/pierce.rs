@@ -1,18 +1,19 @@
-//! Where a line of sight meets the front of a surface that is known to be seen there.
+//! The intersection of a line of sight with the front of a surface that is known to be visible
+//! there.
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::{Cone, Surface, Torus};
 
-/// How often Newton's step is made on a torus, and into how many steps its ball is cut where that
-/// does not arrive.
+/// The number of Newton's steps on a torus, and of the steps into which its ball is divided where
+/// Newton's method fails.
 const STEPS: usize = 8;
 const CUTS: usize = 64;
 
-/// The distance along a unit direction at which a line meets the front of a face's surface, next to
-/// `hint` where it may do so more than once. A line that just misses the surface meets it where it
-/// is nearest: its limb.
+/// The distance along a unit direction at which a line intersects the front of a face's surface,
+/// near `hint` where there are several intersections. A line that just misses the surface gets the
+/// point nearest to it: its limb.
 pub fn front(
     brep: &Brep,
     face: FaceId,
@@ -57,7 +58,8 @@ fn entry(a: f64, b: f64, c: f64, enters: bool) -> f64 {
     }
 }
 
-/// Of the two meetings with both nappes the one that is on the cone and seen from its front.
+/// The one of the two intersections with both nappes that is on the cone and visible from its
+/// front.
 fn cone(s: &Cone, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool) -> f64 {
     let (k, m) = (s.cos * s.cos, s.sin * s.sin);
     let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
@@ -78,8 +80,8 @@ fn cone(s: &Cone, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool) -> f64 {
     best
 }
 
-/// The meeting with a torus next to a hint: Newton's method on the distance, and a search in the ball
-/// about it where that does not arrive.
+/// The intersection with a torus near a hint: Newton's method on the distance, and a search in the
+/// ball around the torus where that fails.
 fn torus(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool, hint: f64) -> Option<f64> {
     let sign = if enters { 1.0 } else { -1.0 };
     let value = |t: f64| {
@@ -107,7 +109,8 @@ fn torus(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool, hint: f64)
     searched(&value, q, w, s, hint)
 }
 
-/// The crossing from outside to inside nearest to the hint, or else where the line is nearest.
+/// The crossing from outside to inside nearest to the hint, or otherwise the point where the line
+/// is nearest.
 fn searched(
     value: &impl Fn(f64) -> (f64, f64),
     q: &Vector3<f64>,

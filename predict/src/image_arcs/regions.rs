@@ -1,9 +1,10 @@
-//! The regions that arcs divide an image into, each with the one face, and the lights, that are seen
-//! in it.
+//! The regions into which arcs divide an image, each with the one face and the lights that are
+//! visible in it.
 //!
-//! Sides of sections that face one another across a line of the image, with nothing between them,
-//! belong to one region. What is seen in it is asked of a line of sight through each of a few points
-//! of it; where these do not agree, or the sides of shadows contradict it, every pixel is asked.
+//! Two sides of sections that face each other along a scanline, with no arc between them, belong to
+//! one region. The face and the lights of a region are determined by lines of sight through a few
+//! of its points. Where these do not agree, or the sides of shadows contradict them, every pixel is
+//! evaluated by itself.
 
 use super::arc::{ArcSide, PredictedArc};
 use super::lit_scene::LitScene;
@@ -12,23 +13,23 @@ use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
 
-/// How many bands of a region have points that are asked.
+/// The number of bands of a region from which sample points are taken.
 const BANDS: usize = 3;
-/// The places in a gap that are asked: of a flat region only the first, its middle.
+/// The positions of sample points in a gap; in a flat region only the first, its middle, is used.
 const ACROSS: [f64; 3] = [0.5, 0.12, 0.88];
-/// Of a smaller region, in pixels, only the middles of gaps are asked.
+/// In a region smaller than this, in pixels, only the middles of gaps are sampled.
 const SMALL: f64 = 64.0;
-/// How far next to the middle of a section it is asked, in pixels.
-const BESIDE: f64 = 0.5;
-/// A point determines whether a light reaches a region only where it does not graze the face.
+/// The distance of a check point from the middle of a section, in pixels.
+const CHECK_DISTANCE: f64 = 0.5;
+/// The least cosine of incidence at which a point determines whether a light reaches a region.
 const GRAZING: f64 = 1.0 / 64.0;
 
-/// What is seen in a region.
+/// The content of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionSample {
     /// The face; none is the background.
     pub face: Option<FaceId>,
-    /// A point of the face that is seen in it.
+    /// A point of the face that is visible in it.
     pub point: Point3<f64>,
     /// By bit: whether the light reaches it, where it is turned towards the light.
     pub lit: u64,
@@ -37,19 +38,19 @@ pub struct RegionSample {
 /// A region of an image.
 #[derive(Clone, Debug)]
 pub struct Region {
-    /// What is seen in it; none where every point has to be requested itself.
+    /// Its content; none where every pixel has to be evaluated by itself.
     pub seen: Option<RegionSample>,
     /// Its area within the image, in pixels.
     pub area: f64,
-    /// The least and the greatest pixel that shows it: columns and rows.
+    /// The bounds of its pixels: columns and rows.
     pub bounds: [[f64; 2]; 2],
-    /// A few points of it, with the length of the gap between arcs each is in the middle of.
+    /// Sample points, each with the length of the gap between arcs whose middle it is.
     pub points: Vec<([f64; 2], f64)>,
 }
 
 impl Region {
-    /// A region of which nothing is told so far.
-    fn untold() -> Self {
+    /// A region without content.
+    fn without_content() -> Self {
         Self {
             seen: None,
             area: 0.0,
@@ -66,8 +67,8 @@ pub struct Regions {
     pub scanlines: Scanlines,
     /// The sections of the arcs.
     pub sections: Sections,
-    /// The regions; the first is what lies beyond all arcs, the last all gaps of lines of which
-    /// neither end tells what they are.
+    /// The regions. The first is the outside of all arcs. The last contains all gaps of scanlines
+    /// whose region neither end determines.
     pub all: Vec<Region>,
     /// By side of a section: its region.
     sides: Vec<u32>,
@@ -75,13 +76,13 @@ pub struct Regions {
     width: usize,
 }
 
-/// The number of a side of a section.
+/// The index of a side of a section.
 fn side(section: u32, side: ArcSide) -> usize {
-    // The first number is of what lies beyond all arcs.
+    // Index 0 is the outside of all arcs.
     1 + 2 * section as usize + usize::from(side == ArcSide::Right)
 }
 
-/// Sets of numbers that are joined (Tarjan 1975).
+/// Disjoint sets of indices (Tarjan 1975).
 struct Sets(Vec<u32>);
 
 impl Sets {
@@ -96,7 +97,7 @@ impl Sets {
 
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.find(a as u32), self.find(b as u32));
-        // The lesser number stands for both, so that the order of joins does not matter.
+        // The lesser index represents both, so that the order of joins does not matter.
         let (least, most) = (a.min(b), a.max(b));
         self.0[most as usize] = least;
     }
@@ -118,11 +119,11 @@ impl Regions {
             let root = sets.find(i as u32) as usize;
             if numbers[root] == u32::MAX {
                 numbers[root] = all.len() as u32;
-                all.push(Region::untold());
+                all.push(Region::without_content());
             }
             sides.push(numbers[root]);
         }
-        all.push(Region::untold());
+        all.push(Region::without_content());
         let mut regions = Self {
             scanlines,
             sections,
@@ -131,11 +132,12 @@ impl Regions {
             width,
         };
         regions.choose_points();
-        regions.ask(stage, arcs);
+        regions.sample(stage, arcs);
         regions
     }
 
-    /// How many arcs divide the image; outlines of highlights, which come after them, do not.
+    /// The number of arcs that divide the image; outlines of highlights, which come after them, do
+    /// not.
     pub fn arcs(&self) -> usize {
         self.sections.arcs()
     }
@@ -153,7 +155,8 @@ impl Regions {
         self.between(k.checked_sub(1).map(|k| &on[k]), on.get(k))
     }
 
-    /// The gaps of a line: the region between each two crossings, from beyond the left on.
+    /// The gaps of a scanline: the region between each two crossings, starting with the outside on
+    /// the left.
     pub fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
         let on = self.scanlines.on(line);
         (0..=on.len()).map(move |k| {
@@ -164,12 +167,12 @@ impl Regions {
         })
     }
 
-    /// The region between two crossings that follow one another on a line, or beyond the last.
+    /// The region between two consecutive crossings of a scanline, or beyond the last.
     fn between(&self, from: Option<&ScanlineCrossing>, to: Option<&ScanlineCrossing>) -> u32 {
         let (Some(from), Some(to)) = (from, to) else {
             return self.sides[0];
         };
-        // Next to the end of a section, or to another arc, the other crossing tells.
+        // Near the end of a section, or near another arc, the other crossing decides.
         match (from.firm, to.firm) {
             (true, _) => self.sides[right_of(from)],
             (false, true) => self.sides[left_of(to)],
@@ -177,8 +180,8 @@ impl Regions {
         }
     }
 
-    /// Measures the regions, and chooses points of them: of lines spread over a region those with the
-    /// widest gaps, and of a gap its middle and places towards its ends.
+    /// Measures the regions and chooses their sample points: on scanlines spread over a region
+    /// those with the widest gaps, and in a gap its middle and points towards its ends.
     fn choose_points(&mut self) {
         let (left, right) = (-0.5, self.width as f64 - 0.5);
         let inside = |[from, to]: [f64; 2]| (from.max(left), to.min(right));
@@ -218,20 +221,20 @@ impl Regions {
         }
     }
 
-    /// Asks what is seen in every region.
-    fn ask(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
+    /// Determines the content of every region.
+    fn sample(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
         let lights = stage.lights.len().max(1);
         let votes = self.votes(arcs, stage.lights.len());
-        let told = self.all.len() - 1;
-        for (region, votes) in self.all[..told].iter_mut().zip(votes.chunks(lights)) {
+        let defined = self.all.len() - 1;
+        for (region, votes) in self.all[..defined].iter_mut().zip(votes.chunks(lights)) {
             region.seen = seen(stage, region, votes);
         }
-        self.doubt(stage, arcs);
+        self.check_sections(stage, arcs);
     }
 
-    /// Asks next to the middle of every section: a region that shows something else there than it is
-    /// told to, because arcs leave a gap that no line passes, is told nothing of.
-    fn doubt(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
+    /// Checks every region next to the middle of each of its sections. A region with other content
+    /// there loses its content: arcs leave a gap that no scanline passes.
+    fn check_sections(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
         for section in 0..self.sections.all.len() {
             let (arc, [from, to]) = self.sections.all[section];
             let line = &arcs[arc as usize].line;
@@ -239,19 +242,19 @@ impl Regions {
             let [a, b] = [line.points[middle], line.points[middle + 1]];
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             let across = [
-                (a[1] - b[1]) / length * BESIDE,
-                (b[0] - a[0]) / length * BESIDE,
+                (a[1] - b[1]) / length * CHECK_DISTANCE,
+                (b[0] - a[0]) / length * CHECK_DISTANCE,
             ];
             for sign in [1.0, -1.0] {
                 let at = [0, 1].map(|i| 0.5 * (a[i] + b[i]) + sign * across[i]);
                 let side = ArcSide::new(at, [a, b]);
                 let region = self.at(at);
-                // Another arc may run in between.
+                // Another arc may lie between.
                 if region != self.adjacent(section as u32, side) || !self.contains(at) {
                     continue;
                 }
                 let seen = &mut self.all[region as usize].seen;
-                *seen = seen.filter(|told| agrees(stage, told, at));
+                *seen = seen.filter(|content| agrees(stage, content, at));
             }
         }
     }
@@ -262,7 +265,7 @@ impl Regions {
         inside(x, self.width) && inside(y, self.scanlines.lines() / LINES)
     }
 
-    /// By region and light: how many sides of shadows say that it is lit, and that it is not.
+    /// By region and light: how many sides of shadows mark it as lit, and as not lit.
     fn votes(&self, arcs: &[PredictedArc], lights: usize) -> Vec<[u32; 2]> {
         let mut votes = vec![[0; 2]; self.all.len() * lights.max(1)];
         for (i, arc) in arcs.iter().enumerate() {
@@ -303,10 +306,10 @@ fn join(on: &[ScanlineCrossing], sets: &mut Sets) {
     }
 }
 
-/// Whether a region shows at a point of it what it is told to.
-fn agrees(stage: &LitScene<'_>, told: &RegionSample, at: [f64; 2]) -> bool {
+/// Whether the view at a point of a region agrees with its content.
+fn agrees(stage: &LitScene<'_>, content: &RegionSample, at: [f64; 2]) -> bool {
     let met = stage.seen(at);
-    if met.map(|(face, _)| face) != told.face {
+    if met.map(|(face, _)| face) != content.face {
         return false;
     }
     let Some((face, p)) = met else {
@@ -315,16 +318,17 @@ fn agrees(stage: &LitScene<'_>, told: &RegionSample, at: [f64; 2]) -> bool {
     let normal = stage.subject.brep.outward(face, &p);
     (0..stage.lights.len()).all(|light| {
         let (towards, _) = stage.lights[light].0.from(&p);
-        let told = told.lit >> light & 1 == 1;
-        normal.dot(&towards) <= GRAZING || stage.is_lit(light, &p, face) == told
+        let content = content.lit >> light & 1 == 1;
+        normal.dot(&towards) <= GRAZING || stage.is_lit(light, &p, face) == content
     })
 }
 
-/// What is seen at all points of a region, given what the sides of shadows say; none where they differ.
+/// The content of a region at all its sample points, given the votes of the sides of shadows; none
+/// where they differ.
 fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<RegionSample> {
     let points = &region.points;
     let first = stage.seen(points.first()?.0);
-    // Flat regions are alike all over, and of small ones few pixels are wrong.
+    // A flat region is uniform, and in a small one few pixels can be wrong.
     let flat =
         |(face, _): &(FaceId, _)| matches!(stage.subject.brep.surface(*face), Surface::Plane(_));
     let step = if first.as_ref().is_none_or(flat) || region.area < SMALL {
@@ -362,7 +366,7 @@ fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Reg
     })
 }
 
-/// Whether a light reaches points of a face; none where it reaches some of them.
+/// Whether a light reaches points of a face; none where it reaches only some of them.
 fn is_lit(
     stage: &LitScene<'_>,
     light: usize,
@@ -381,7 +385,7 @@ fn is_lit(
         .map(|p| stage.is_lit(light, p, face));
     match votes {
         [0, 0] => {
-            // Where nothing is turned to the light it does not matter.
+            // If no point is turned towards the light, the value does not matter.
             let first = cast.next().unwrap_or(true);
             cast.all(|lit| lit == first).then_some(first)
         }

@@ -1,39 +1,41 @@
-//! Lines across an image, and where arcs cross them: between two crossings there is one region.
+//! Scanlines of an image and their crossings with arcs. Between two crossings there is one region.
 
 use super::arc::{ArcSide, PredictedArc};
 use super::flatten::FINE;
 use std::ops::Range;
 
-/// How many lines are laid through a row of pixels.
+/// The number of scanlines in a row of pixels.
 pub const LINES: usize = 8;
-/// The distance between two arcs, in pixels, from which on polylines lie as they do: those that are
-/// nearer than they are fine may lie the other way about.
+/// The distance between two arcs, in pixels, above which their polylines have the arcs' order.
+/// Below, within the accuracy of polylines, the order may be reversed.
 pub const APART: f64 = 4.0 * FINE;
-/// So near to the end of an arc's section, in pixels, a crossing may be of the next one as well.
+/// The distance from the end of an arc's section, in pixels, within which a crossing may also be
+/// one of the next section.
 const LOOSE: f64 = 1.0 / (1 << 20) as f64;
 
-/// Where an arc crosses a line.
+/// A crossing of an arc and a scanline.
 #[derive(Clone, Copy, Debug)]
 pub struct ScanlineCrossing {
     /// The column.
     pub x: f64,
-    /// The section of an arc, by its number in [`Sections`].
+    /// The index of the arc's section in [`Sections`].
     pub section: u32,
     /// The side of the section that is to the right on the page.
     pub right: ArcSide,
-    /// Whether it is clearly this section that crosses, apart from all others.
+    /// Whether it is unambiguous that this section crosses, separately from all others.
     pub firm: bool,
-    /// The sine of the angle at which it crosses: what a polyline is off its curve moves the crossing
-    /// by as much over this.
+    /// The sine of the crossing angle. An error of the polyline moves the crossing by the error
+    /// over this.
     pub slant: f64,
 }
 
-/// The sections of arcs: what lies between two points at which others end on them, or their own ends.
+/// The sections of arcs: the pieces between two points at which others end on them, or their own
+/// ends.
 #[derive(Clone, Debug, Default)]
 pub struct Sections {
     /// By section: its arc, and the points of the arc's polyline at its ends.
     pub all: Vec<(u32, [usize; 2])>,
-    /// By arc: its first section, and after the last arc the number of all.
+    /// By arc: the index of its first section; after the last arc the number of all sections.
     first: Vec<u32>,
 }
 
@@ -67,31 +69,33 @@ impl Sections {
 /// The crossings of all lines of an image.
 #[derive(Clone, Debug)]
 pub struct Scanlines {
-    /// By line: where its crossings start, and after the last line their number.
+    /// By scanline: the index of its first crossing; after the last scanline the number of
+    /// crossings.
     starts: Vec<u32>,
     crossings: Vec<ScanlineCrossing>,
 }
 
-/// The row of a line of the image, in pixels.
+/// The row of a scanline, in pixels.
 pub fn line_y(line: usize) -> f64 {
-    // Off the middles by a part of no fraction, so that what is drawn at whole pixels meets none.
+    // The offset is no simple fraction of a pixel, so that curves at whole pixels do not coincide
+    // with scanlines.
     let within = ((line % LINES) as f64 + 0.486_731) / LINES as f64;
     (line / LINES) as f64 - 0.5 + within
 }
 
-/// The line next to a row.
+/// The scanline nearest to a row.
 pub fn line_at(y: f64) -> usize {
     ((y + 0.5) * LINES as f64).max(0.0) as usize
 }
 
-/// The first line at or below a row.
+/// The first scanline at or below a row.
 fn first_line(y: f64, lines: usize) -> usize {
     let guess = ((y + 0.5) * LINES as f64 - 0.486_731).ceil().max(0.0);
     (guess as usize).min(lines)
 }
 
 impl Scanlines {
-    /// The crossings of the arcs with the lines of an image with so many rows.
+    /// The crossings of the arcs with the scanlines of an image of a height in pixels.
     pub fn new(arcs: &[PredictedArc], sections: &Sections, height: usize) -> Self {
         let lines = height * LINES;
         let mut counts = vec![0u32; lines + 1];
@@ -124,18 +128,18 @@ impl Scanlines {
         }
     }
 
-    /// The crossings of a line, from the left to the right.
+    /// The crossings of a scanline, from left to right.
     pub fn on(&self, line: usize) -> &[ScanlineCrossing] {
         &self.crossings[self.starts[line] as usize..self.starts[line + 1] as usize]
     }
 
-    /// How many lines there are.
+    /// The number of scanlines.
     pub fn lines(&self) -> usize {
         self.starts.len() - 1
     }
 }
 
-/// Notes which crossings of a line are too near to one another for their order to be known.
+/// Marks the crossings of a scanline that are too near to one another for their order to be known.
 fn loosen(on: &mut [ScanlineCrossing]) {
     for i in 1..on.len() {
         let [a, b] = [on[i - 1], on[i]];
@@ -146,7 +150,7 @@ fn loosen(on: &mut [ScanlineCrossing]) {
     }
 }
 
-/// Tells every crossing of a section with a line.
+/// Reports every crossing of a section with a scanline.
 fn each(
     arcs: &[PredictedArc],
     sections: &Sections,
@@ -161,7 +165,7 @@ fn each(
             let (top, bottom) = (a[1].min(b[1]), a[1].max(b[1]));
             let slope = (b[0] - a[0]) / (b[1] - a[1]);
             let slant = (b[1] - a[1]).abs() / (b[0] - a[0]).hypot(b[1] - a[1]);
-            // What runs down has its left on the page's right.
+            // A segment that runs down has its left side on the page's right.
             let right = if b[1] > a[1] {
                 ArcSide::Left
             } else {

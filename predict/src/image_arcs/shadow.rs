@@ -1,5 +1,6 @@
-//! Cast shadows: what a light sees end before something farther off is the boundary of a shadow on
-//! it. So they are the contours of the light's view, carried on along its lines of sight.
+//! Cast shadows. Where a contour of the light's view lies in front of another face, it casts the
+//! boundary of a shadow on that face. So shadow boundaries are the contours of the light's view,
+//! extended along its lines of sight.
 
 use super::arc::{ArcSide, ArcSource, PredictedArc, Shade};
 use super::crossings::{ArcPoint, Lines};
@@ -12,30 +13,32 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_visibility::contours::Contour;
 
-/// How far aside of a contour its sides are looked at, in the part's size.
-const ASIDE: f64 = 1.0 / 65_536.0;
-/// How fine the polylines of a light's view are, in the part's size: they only say which curve another
-/// one ends on, and about where.
-const LIGHT_FINE: f64 = 1.0 / 4096.0;
-/// How far something has to be behind a contour for a shadow on it to be distinguished, in the part's
+/// The lateral distance from a contour at which its sides are evaluated, relative to the part's
 /// size.
+const ASIDE: f64 = 1.0 / 65_536.0;
+/// The accuracy of the polylines of a light's view, relative to the part's size. They only
+/// determine which curve another one ends on, and approximately where.
+const LIGHT_FINE: f64 = 1.0 / 4096.0;
+/// The least distance of a face behind a contour for a shadow on it to be distinguished, relative
+/// to the part's size.
 const BEHIND: f64 = 1.0 / 1024.0;
-/// By how many pixels the ends of a shadow's boundary are drawn out, so that they reach what they end
-/// on, which is as fine as [`FINE`].
+/// The length in pixels by which the ends of a shadow's boundary are extended, so that they reach
+/// the arcs on which they end, which are accurate to [`FINE`].
 const OVERLAP: f64 = 2.0 * FINE;
 
-/// A piece of what a light sees, before a face that it hides in part.
+/// A piece of a contour of a light's view, in front of a face that it partly hides.
 struct Cast<'c> {
     contour: &'c Contour,
     range: [f64; 2],
     ground: FaceId,
-    /// How far the ground is from where the light's lines of sight start, in the middle.
+    /// The distance of the ground from the start of the light's lines of sight, at the middle.
     hint: f64,
-    /// A point of the ground that the light reaches, next to the middle.
+    /// A lit point of the ground, near the middle.
     lit: Point3<f64>,
 }
 
-/// Adds the visible boundaries of cast shadows to the arcs of a view, which they stop where they end.
+/// Adds the visible boundaries of cast shadows to the arcs of a view, and stops the arcs where
+/// these end.
 pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<PredictedArc>) {
     let lines = Lines::new(arcs);
     let mut found = Vec::new();
@@ -102,7 +105,7 @@ fn source(light: usize, cast: &Cast<'_>, ordinals: &[u32]) -> ArcSource {
     }
 }
 
-/// What a light sees.
+/// The view of a light.
 fn seen_by_light(
     stage: &LitScene<'_>,
     view: &Sightings<'_>,
@@ -115,7 +118,7 @@ fn seen_by_light(
     view.arcs(ordinals, light_unit(stage, view) * LIGHT_FINE, &everywhere)
 }
 
-/// Where a face turns away from a light, if the light sees a limb there, as the camera shows it.
+/// The terminator of a face, if the light's view has a limb there, as the camera sees it.
 fn terminator(
     stage: &LitScene<'_>,
     light: usize,
@@ -170,7 +173,7 @@ fn casts<'v>(
     casts
 }
 
-/// The length in a light's image of a part's radius next to its middle.
+/// The length in a light's image of the part's radius near its centre.
 fn light_unit(stage: &LitScene<'_>, view: &Sightings<'_>) -> f64 {
     let projection = view.scene.projection;
     let centre = stage.subject.centre;
@@ -178,7 +181,7 @@ fn light_unit(stage: &LitScene<'_>, view: &Sightings<'_>) -> f64 {
     (projection.project(&(centre + across)) - projection.project(&centre)).norm()
 }
 
-/// The parameter at a point of a polyline; where something ends behind it, as near as f64 values tell.
+/// The parameter at a point of a polyline; where an arc ends behind it, as accurate as f64 allows.
 fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: usize) -> f64 {
     let mut t = line.parameters[k];
     if k == 0 || k + 1 == line.points.len() {
@@ -199,7 +202,7 @@ fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: 
     t.clamp(lo.min(hi), lo.max(hi))
 }
 
-/// What a piece casts: it does where one side of it is farther off.
+/// The cast of a piece: there is one where a face lies behind one side of it.
 fn cast<'v>(
     stage: &LitScene<'_>,
     view: &Sightings<'_>,
@@ -236,9 +239,9 @@ fn cast<'v>(
     })
 }
 
-/// The direction in which a light's lines of sight are likely to pass by a point of a contour: out of the
-/// faces that are turned away from it. None where both faces of an edge are turned to it, so that
-/// nothing next to it is behind it.
+/// The direction in which a light's lines of sight probably pass a point of a contour: out of the
+/// faces that are turned away from it. None where both faces of an edge are turned towards the
+/// light, so that no face next to the edge lies behind it.
 fn open_direction(
     stage: &LitScene<'_>,
     view: &Sightings<'_>,
@@ -253,7 +256,7 @@ fn open_direction(
         return None;
     }
     let away: Vector3<f64> = normals().filter(|n| !is_turned(n)).sum();
-    // Of a limb the normal is across the line of sight, whatever its sign is told to be.
+    // The normal of a limb is perpendicular to the line of sight, whatever the computed sign.
     Some(if away == Vector3::zeros() {
         normals().sum()
     } else {
@@ -261,7 +264,7 @@ fn open_direction(
     })
 }
 
-/// Where the point of a cast with a parameter falls on its ground, as the camera shows it.
+/// The projection on the ground of the point of a cast at a parameter, as the camera sees it.
 fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> Option<Shown> {
     let light = view.scene.projection;
     let camera = stage.view.scene.projection;
@@ -272,7 +275,7 @@ fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> 
     (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
 }
 
-/// The image of the curve in which a cast falls on its ground.
+/// The image of the projection of a cast on its ground.
 fn shadow(
     stage: &LitScene<'_>,
     view: &Sightings<'_>,
@@ -287,7 +290,7 @@ fn shadow(
     Some(line)
 }
 
-/// Moves both ends of a polyline on by [`OVERLAP`].
+/// Extends both ends of a polyline by [`OVERLAP`].
 fn draw_out(line: &mut Polyline) {
     let n = line.points.len();
     for (end, before) in [(0, 1), (n - 1, n - 2)] {
@@ -300,8 +303,8 @@ fn draw_out(line: &mut Polyline) {
     }
 }
 
-/// The side of a shadow's boundary that is lit: that of a point next to its middle, which is closer to
-/// it than a polyline is.
+/// The lit side of a shadow's boundary: the side of a point next to its middle, which is nearer to
+/// the boundary than the accuracy of its polyline.
 fn lit_side(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<ArcSide> {
     let [from, to] = cast.range;
     let (t, step) = (0.5 * (from + to), (to - from) * ASIDE);
@@ -313,7 +316,7 @@ fn lit_side(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Opti
     Some(ArcSide::new([lit.x, lit.y], [middle, ahead]))
 }
 
-/// The parts of a curve on a face that the camera sees, and where these end on which arcs.
+/// The parts of a curve on a face that the camera sees, with the arcs on which these end.
 fn visible_parts(
     stage: &LitScene<'_>,
     lines: &Lines,

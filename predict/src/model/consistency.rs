@@ -1,4 +1,4 @@
-//! Whether what the records of a model say adds up.
+//! Consistency checks of the records of a model.
 
 use super::observation::{ATTRIBUTES, Observation};
 use super::record::{
@@ -11,20 +11,20 @@ use crate::image_arcs::ArcSource;
 use premio_kernel::brep::Brep;
 use premio_text::number;
 
-/// A value that does not fit to the rest.
+/// A value that is inconsistent with the rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{key}` {reason}")]
 pub struct Inconsistency {
-    /// The keys that lead to it within its record.
+    /// Its path of keys in the record.
     pub key: String,
-    /// What is wrong with it.
+    /// The error.
     pub reason: String,
 }
 
 type Checked = Result<(), Inconsistency>;
 
-fn check(holds: bool, key: impl Into<String>, reason: impl Into<String>) -> Checked {
-    match holds {
+fn check(is_met: bool, key: impl Into<String>, reason: impl Into<String>) -> Checked {
+    match is_met {
         true => Ok(()),
         false => Err(Inconsistency {
             key: key.into(),
@@ -33,7 +33,7 @@ fn check(holds: bool, key: impl Into<String>, reason: impl Into<String>) -> Chec
     }
 }
 
-/// How many things of each kind there are that features are the images of.
+/// The numbers of edges, faces and lights, which limit the sources of features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceLimits {
     edges: usize,
@@ -63,14 +63,14 @@ impl SourceLimits {
         Self::NONE.with_setups(setups)
     }
 
-    /// The same, with those of setups.
+    /// The limits with those of setups.
     #[must_use]
     pub fn with_setups(self, setups: &Setups) -> Self {
         let lights = setups.lights.len() + usize::from(setups.illumination.is_some());
         Self { lights, ..self }
     }
 
-    /// Whether what a feature is the image of is there.
+    /// Checks that the source of a feature exists.
     ///
     /// # Errors
     /// It is beyond the limits.
@@ -92,7 +92,7 @@ impl SourceLimits {
     }
 }
 
-/// Whether a description can be read as it says.
+/// Checks that a description is consistent.
 ///
 /// # Errors
 /// Its resolution is no distance.
@@ -101,11 +101,11 @@ pub fn check_description(description: &DescriptionRecord) -> Result<(), Inconsis
         return Ok(());
     };
     positive("description.resolution", resolution)?;
-    let reason = "is there with `exact`, expected one of them";
+    let reason = "is given together with `exact`, expected one of them";
     check(!description.exact, "description.resolution", reason)
 }
 
-/// Whether what a setup shows adds up.
+/// Checks that an observation is consistent.
 ///
 /// # Errors
 /// A value is out of its range, or features are not in order.
@@ -115,7 +115,7 @@ pub fn check_observation(observation: &Observation, limits: &SourceLimits) -> Ch
         let key = |name: &str| format!("sights[{i}].{name}");
         limits.check(&key("source"), &sight.source)?;
         let is_next = i == 0 || sights[i - 1].source < sight.source;
-        check(is_next, key("source"), "is not in order, or is there twice")?;
+        check(is_next, key("source"), "is out of order or repeated")?;
         positive(&key("length"), sight.length)?;
         share(&key("share"), sight.share)?;
         for growth in sight.growth.iter().flatten() {
@@ -124,22 +124,22 @@ pub fn check_observation(observation: &Observation, limits: &SourceLimits) -> Ch
     }
     for (i, tuple) in observation.tuples.iter().enumerate() {
         let key = format!("tuples[{i}].members");
-        check(tuple.members.len() > 1, &*key, "are less than two")?;
+        check(tuple.members.len() > 1, &*key, "are fewer than two")?;
         for member in &tuple.members {
             let reason = format!("has {member}, and there are {} sights", sights.len());
             check((*member as usize) < sights.len(), &*key, reason)?;
         }
     }
     let [near, pairs] = observation.chance;
-    check(near <= pairs, "chance", "is of more pairs than there are")?;
+    check(near <= pairs, "chance", "counts more near pairs than pairs")?;
     for deviation in observation.pose.iter().flatten() {
         positive("pose", *deviation)?;
     }
     let is_nothing = observation.unseen.is_none() || sights.is_empty();
-    check(is_nothing, "unseen", "is there, and so are sights")
+    check(is_nothing, "unseen", "is given together with sights")
 }
 
-/// How many records of each kind have been seen.
+/// The checker of a model's records: it counts the records of each kind.
 #[derive(Clone, Debug)]
 pub struct Consistency {
     head: ModelHead,
@@ -153,7 +153,7 @@ impl Consistency {
     /// Begins with the head of a model.
     ///
     /// # Errors
-    /// What it says does not add up.
+    /// It is inconsistent.
     pub fn new(head: &ModelHead) -> Result<Self, Inconsistency> {
         let schema = format!("is \"{}\", expected \"{SCHEMA}\"", head.schema);
         check(head.schema == SCHEMA, "schema", schema)?;
@@ -166,14 +166,22 @@ impl Consistency {
             .values()
             .try_fold(0u64, |sum, n| sum.checked_add(*n));
         let fits = |n: Option<u64>| n.is_some_and(|n| n <= head.count);
-        check(fits(unseen), "unseen", "is of more setups than there are")?;
+        check(
+            fits(unseen),
+            "unseen",
+            "counts more setups than the model has",
+        )?;
         check(
             fits(Some(head.posed)),
             "posed",
-            "is of more setups than there are",
+            "counts more setups than the model has",
         )?;
         let others = fits(Some(head.other_aspects));
-        check(others, "other_aspects", "is of more setups than there are")?;
+        check(
+            others,
+            "other_aspects",
+            "counts more setups than the model has",
+        )?;
         share("chance", head.chance)?;
         let positive = |pose: [f64; 2]| pose.iter().all(|x| *x >= 0.0);
         check(head.pose.is_none_or(positive), "pose", "is below zero")?;
@@ -189,10 +197,10 @@ impl Consistency {
         })
     }
 
-    /// Goes on with the next record.
+    /// Checks the next record.
     ///
     /// # Errors
-    /// It does not fit to the head and the records before.
+    /// It is inconsistent with the head or an earlier record.
     pub fn next(&mut self, record: &Record) -> Checked {
         match record {
             Record::Model(_) => check(false, "record", "is `model` twice, expected it once"),
@@ -217,7 +225,8 @@ impl Consistency {
         }
     }
 
-    /// Whether all records that the head counts were there; the key is one of the head.
+    /// Checks that all records that the head counts were present; the key of an error is one of the
+    /// head.
     ///
     /// # Errors
     /// Some are missing.
@@ -231,7 +240,7 @@ impl Consistency {
             let reason = format!("is {expected}, and {found} of them follow");
             check(found == expected, key, reason)?;
         }
-        let reason = "is `codetection` in no line that follows, expected it in one";
+        let reason = "is `codetection` in no line, expected one such line";
         check(self.codetections == 1, "record", reason)
     }
 
@@ -255,14 +264,14 @@ impl Consistency {
             .iter()
             .try_fold(0u64, |sum, n| sum.checked_add(*n));
         let within = counted.is_some_and(|n| n <= self.head.count);
-        check(within, "fragments", "are of more setups than there are")?;
+        check(within, "fragments", "count more setups than the model has")?;
         share("share", feature.share)?;
         SourceLimits::of_setups(&self.head.setups).check("source", &feature.source)?;
         attributes("attributes", feature.attributes.as_ref())
     }
 
     fn aspect(&self, aspect: &Aspect) -> Checked {
-        let reason = "is more than there are";
+        let reason = "is more than the model has";
         check(aspect.setups <= self.head.count, "setups", reason)?;
         check(aspect.view.len() == 3, "view", "has not three numbers")?;
         for (i, feature) in aspect.features.iter().enumerate() {
@@ -279,7 +288,7 @@ impl Consistency {
         for (i, member) in tuple.members.iter().enumerate() {
             self.rank(&format!("members[{i}]"), *member)?;
         }
-        check(tuple.members.len() > 1, "members", "are less than two")?;
+        check(tuple.members.len() > 1, "members", "are fewer than two")?;
         let [visible, seen, kept] = tuple.counts;
         let ordered = kept <= seen && seen <= visible;
         check(
@@ -309,7 +318,7 @@ impl Consistency {
                 "has not three numbers",
             )?;
             let square = node.table.iter().all(|row| row.len() == 3);
-            // A feature that depends on none has no table.
+            // A feature without a parent has no table.
             let rows = node.table.len();
             let is_whole = square && (rows == 3 || rows == 0 && node.parent.is_none());
             check(is_whole, key("table"), "is not three by three")?;
@@ -326,11 +335,15 @@ impl Consistency {
         check(feature < count, key, reason)
     }
 
-    /// The sum of counts of setups.
+    /// The checked sum of counts of setups.
     fn states(&self, key: &str, states: &[u64; 3]) -> Result<u64, Inconsistency> {
         let sum = states.iter().try_fold(0u64, |sum, n| sum.checked_add(*n));
         let within = sum.filter(|sum| *sum <= self.head.count);
-        check(within.is_some(), key, "are of more setups than there are")?;
+        check(
+            within.is_some(),
+            key,
+            "count more setups than the model has",
+        )?;
         Ok(within.unwrap_or_default())
     }
 }

@@ -1,5 +1,5 @@
-//! The text of a model (`premio.model/1`): written with its digest, read, and held against its own
-//! counts and the digest.
+//! The text of a model (`premio.model/1`): it is written with its digest, read, and checked against
+//! its own counts and the digest.
 
 use super::consistency::{Consistency, Inconsistency, SourceLimits};
 use super::record::{
@@ -20,7 +20,7 @@ pub struct ModelFile {
 }
 
 impl ModelFile {
-    /// Whether features are images of edges and faces that the part has.
+    /// Checks that the part has the edges and faces of the features.
     ///
     /// # Errors
     /// One is not, at its line of the model's text.
@@ -38,7 +38,7 @@ impl ModelFile {
         Ok(())
     }
 
-    /// What is wrong with a value of the first line of the model's text.
+    /// The error of a value in the first line of the model's text.
     pub fn in_head(&self, text: &str, key: &str, words: &str) -> ModelError {
         let first = text.lines().next().unwrap_or_default();
         Line::new(first, 0).map_or_else(|error| error, |line| line.wrong(key, words))
@@ -50,7 +50,7 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What is wrong with a model's text, and where.
+/// An error of a model's text, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{words}")]
 pub struct ModelError {
@@ -60,10 +60,10 @@ pub struct ModelError {
     pub words: String,
 }
 
-/// The model of a text.
+/// Parses the text of a model.
 ///
 /// # Errors
-/// It is none, is of another schema, says what does not add up, or is not as it was written.
+/// It is no model, has another schema, is inconsistent, or was changed after it was written.
 pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
     let first = text.lines().next().unwrap_or_default();
     if first.trim().is_empty() {
@@ -86,7 +86,7 @@ pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
             .next(&record)
             .map_err(|e| line.inconsistent(&e))?;
         records.push(record);
-        // An ending of two characters is not one that was written; the digest tells.
+        // A line ending of two characters is never written; the digest detects it.
         start += next.len() + 1;
     }
     consistency.finish().map_err(|e| line.inconsistent(&e))?;
@@ -99,13 +99,13 @@ pub fn parse(text: &str) -> Result<ModelFile, ModelError> {
     Ok(ModelFile { head, records })
 }
 
-/// Where the digits of the digest stand in the first line of a text.
+/// The byte range of the digest's digits in the first line of a text.
 fn digits(text: &str) -> Option<Range<usize>> {
     const MEMBER: &str = "\"sha256\":\"";
     let first = text.lines().next()?;
     let start = first.rfind(MEMBER)? + MEMBER.len();
     let end = start + NO_DIGEST.len();
-    // What follows is the end of the text, in quotes.
+    // The text ends after them, in quotes.
     first.get(start..end)?;
     first[end..].starts_with('"').then_some(start..end)
 }
@@ -160,7 +160,7 @@ impl Line {
         }
     }
 
-    /// Whether the schema is that of models, before anything else is looked at.
+    /// Checks that the schema is that of models, before anything else is read.
     fn check_schema(&self) -> Result<(), ModelError> {
         match self.document.root.get("schema").map(|value| &value.content) {
             Some(Content::Text(schema)) if schema == SCHEMA => Ok(()),
@@ -192,7 +192,7 @@ impl Line {
         }
     }
 
-    /// What the line holds besides the kind of its record.
+    /// Reads the fields of the line's record.
     fn read<T: DeserializeOwned>(&self) -> Result<T, ModelError> {
         let Content::Object(members) = &self.document.root.content else {
             return Err(self.wrong("record", "is missing"));
@@ -224,7 +224,7 @@ mod tests {
         let text = format!("{{\"a\":1,\"sha256\":\"{NO_DIGEST}\"}}\nmore\n");
         let one = sealed(&text).unwrap();
         assert_ne!(one, text);
-        // It is the same, whatever digits there were.
+        // The result does not depend on the previous digits.
         assert_eq!(sealed(&one), Some(one.clone()));
         assert_ne!(sealed(&one.replace("more", "less")), Some(one));
         assert_eq!(sealed("{}\n"), None);
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_model_is_told_at_its_place() {
+    fn invalid_models_are_reported_at_their_position() {
         for (text, at, words) in [
             ("", 0, "empty line"),
             ("{}", 0, "`schema` is missing"),

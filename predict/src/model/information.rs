@@ -1,17 +1,21 @@
-//! How much the found arcs of an image tell of the part's pose.
+//! The information that the found arcs of an image give on the part's pose.
 //!
-//! Notation: the pose is a turn and a move of the part about its middle, (ω, v); a point P at x in the
-//! camera's frame moves by ω × (x − c) + v. A found point of an arc tells its displacement across the
-//! arc, n·dp, within a standard deviation σ: the information matrix is the sum of (n·J)ᵀ(n·J)/σ² over
-//! such points, and the covariance of the pose its inverse (JᵀΣ⁻¹J)⁻¹. A limb tells as much as a curve
-//! that is fixed on the part: by which it slides along the surface is along the line of sight.
+//! Notation: the pose is a rotation and a translation of the part about its centre c, (ω, v); a
+//! point P at x in the camera's frame moves by ω × (x − c) + v; n is the unit normal of an arc in
+//! the image, J the derivative of the image point by the pose, σ the standard deviation of a found
+//! point across its arc.
+//!
+//! A found point of an arc measures its displacement across the arc, n·dp. The information matrix
+//! is the sum of (n·J)ᵀ(n·J)/σ² over such points, and the covariance of the pose its inverse
+//! (JᵀΣ⁻¹J)⁻¹. A limb gives as much information as a curve that is fixed on the part, because it
+//! slides along the surface in the direction of the line of sight.
 
 use crate::feature::DetectedArc;
 use crate::image_arcs::PredictedArc;
 use crate::prediction::PredictedImage;
 use nalgebra::{Matrix6, Point2, Vector3, Vector6};
 
-/// How far apart found points are that tell independently, in pixels.
+/// The distance of independent found points, in pixels.
 const APART: f64 = 4.0;
 /// The least standard deviation of a found point across its arc, in pixels.
 const LEAST: f64 = 1.0 / 8.0;
@@ -26,7 +30,7 @@ pub fn information(draft: &PredictedImage<'_>, evidence: &[DetectedArc]) -> Vec<
 fn of_arc(draft: &PredictedImage<'_>, number: usize, evidence: &DetectedArc) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
     let arc = &draft.arcs[number];
-    // Shadows and highlights move with the light as well.
+    // Shadows and highlights also depend on the light.
     let Some(contour) = arc.contour.filter(|_| !arc.smooth) else {
         return sum;
     };
@@ -56,7 +60,7 @@ fn direction(arc: &PredictedArc, along: f64) -> [f64; 2] {
     [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
 }
 
-/// n·J of a point: by how many pixels its image moves across the arc, with the pose.
+/// n·J of a point: the displacement of its image across the arc, in pixels, by the pose.
 fn row(
     draft: &PredictedImage<'_>,
     p: &nalgebra::Point3<f64>,
@@ -79,10 +83,11 @@ fn row(
     ))
 }
 
-/// The standard deviations of a pose: of its turn in radians, and of its move in the part's unit, each
-/// the root of the sum over the three axes. None where the arcs do not tell it.
+/// The standard deviations of a pose: of its rotation in radians, and of its translation in the
+/// part's unit, each the root of the sum over the three axes. None where the arcs do not determine
+/// it.
 pub fn deviation(information: &Matrix6<f64>) -> Option<[f64; 2]> {
-    // Turns and moves in one scale, so that the inverse keeps its digits.
+    // Rotations and translations are scaled alike, so that the inverse keeps its digits.
     let diagonal = information.diagonal();
     if diagonal.iter().any(|d| *d <= 0.0 || !d.is_finite()) {
         return None;
@@ -103,7 +108,7 @@ pub fn deviation(information: &Matrix6<f64>) -> Option<[f64; 2]> {
     Some([part(0), part(3)])
 }
 
-/// Where the middle of the part is in the image, and how long its radius is there, in pixels.
+/// The image of the part's centre, and the length of its radius there, in pixels.
 pub fn frame(draft: &PredictedImage<'_>) -> ([f64; 2], f64) {
     let projection = draft.stage.view.scene.projection;
     let subject = draft.stage.subject;

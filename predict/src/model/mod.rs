@@ -1,5 +1,5 @@
-//! The model of a part: what hundreds of predictions come to, over the viewing and the illumination
-//! sphere (section 5 of the paper).
+//! The model of a part: the summary of hundreds of predictions over the viewing and the
+//! illumination sphere (section 5 of the paper).
 //!
 //! Each setup is one [`Observation`], written as a line; a
 //! [`Summary`](summary::Summary) reads the lines, as often as it needs, and keeps sums only.

@@ -1,4 +1,4 @@
-//! What one setup shows of a part.
+//! The observation of a part in one setup.
 
 use super::information::{deviation, frame, information};
 use super::setups::Setups;
@@ -11,28 +11,29 @@ use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How many attributes a feature has.
+/// The number of attributes of a feature.
 pub const ATTRIBUTES: usize = 5;
 
-/// A feature in one setup: all arcs that are images of one thing.
+/// A feature in one setup: all arcs with the same source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FeatureObservation {
-    /// What it is the image of.
+    /// Its source.
     pub source: ArcSource,
     /// The length that is visible, in pixels.
     pub length: f64,
-    /// What is found of it.
+    /// Its state.
     pub state: DetectionState,
-    /// How many fragments are found.
+    /// The number of fragments that are found.
     pub fragments: usize,
     /// The share of the visible length that is found.
     pub share: f64,
-    /// Of what is found: mid x, mid y, ln length, cos 2θ, sin 2θ of the chord. Lengths are in the
-    /// image of the part's radius, places about the image of its middle.
+    /// The attributes of the found part: mid x, mid y, ln length, cos 2θ, sin 2θ of the chord.
+    /// Lengths are relative to the image of the part's radius, positions relative to the image of
+    /// its centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attributes: Option<[f64; ATTRIBUTES]>,
-    /// By how much the deviations of the pose, turn and move, grow without it; none where it then is
-    /// not told.
+    /// The factors by which the standard deviations of the pose, rotation and translation, grow
+    /// without it; none where the pose is then undetermined.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<[f64; 2]>,
 }
@@ -40,13 +41,13 @@ pub struct FeatureObservation {
 /// A relation between features in one setup.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct RelationObservation {
-    /// What kind of relation.
+    /// The kind.
     pub kind: RelationKind,
     /// The features, as indices of the setup's sights; of a chain in order.
     pub members: Vec<u32>,
-    /// Whether all members are found, as far as they have to be for the relation to be seen.
+    /// Whether all members are found as far as the relation requires.
     pub seen: bool,
-    /// Whether it holds between what is found.
+    /// Whether it is preserved between the found parts.
     pub kept: bool,
 }
 
@@ -54,15 +55,15 @@ pub struct RelationObservation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RelationKind {
-    /// Two meet at an angle.
+    /// Two end at a point at an angle.
     L,
-    /// Three meet, two of which go straight on.
+    /// Three end at a point, two of them collinear.
     T,
-    /// Three meet within half a turn.
+    /// Three end at a point, within half a turn.
     Arrow,
-    /// Three meet all around.
+    /// Three end at a point, not within half a turn.
     Y,
-    /// More meet.
+    /// More end at a point.
     Multi,
     /// They follow one another.
     Chain,
@@ -79,18 +80,18 @@ pub struct Observation {
     pub sights: Vec<FeatureObservation>,
     /// The relations between them.
     pub tuples: Vec<RelationObservation>,
-    /// How often two features that do not meet have found ends as near as those that do, of how many
-    /// pairs: what a relation holds by chance.
+    /// The number of pairs of features without a junction whose found ends are as near as those of
+    /// a junction, and the number of all such pairs: the chance rate of a relation.
     pub chance: [u32; 2],
-    /// The deviations of the pose: turn in radians, move in the part's unit.
+    /// The standard deviations of the pose: rotation in radians, translation in the part's unit.
     pub pose: Option<[f64; 2]>,
-    /// Why nothing is seen.
+    /// Why nothing is visible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unseen: Option<String>,
 }
 
 impl Observation {
-    /// A setup in which nothing is seen.
+    /// The observation of a setup in which nothing is visible.
     pub fn unseen(setups: &Setups, setup: usize, why: String) -> Self {
         Self {
             setup,
@@ -108,18 +109,18 @@ fn view(setups: &Setups, setup: usize) -> [f64; 3] {
     setups.directions(setup)[0].map_or([0.0; 3], Into::into)
 }
 
-/// What a setup shows of a part.
+/// Observes a part in a setup.
 pub fn observe(draft: &PredictedImage<'_>, setups: &Setups, setup: usize) -> Observation {
     let outcome = draft.outcome();
     let groups = groups(draft);
-    let told = information(draft, &outcome.evidence);
-    let all: Matrix6<f64> = told.iter().sum();
+    let informations = information(draft, &outcome.evidence);
+    let all: Matrix6<f64> = informations.iter().sum();
     let pose = deviation(&all);
     let sights: Vec<FeatureObservation> = groups
         .iter()
         .map(|(source, arcs)| {
             let mut sight = sight(draft, &outcome, *source, arcs);
-            let own: Matrix6<f64> = arcs.iter().map(|&a| told[a as usize]).sum();
+            let own: Matrix6<f64> = arcs.iter().map(|&a| informations[a as usize]).sum();
             let without = deviation(&(all - own));
             sight.growth = pose.zip(without).map(|(p, w)| [w[0] / p[0], w[1] / p[1]]);
             sight
@@ -140,12 +141,12 @@ pub fn observe(draft: &PredictedImage<'_>, setups: &Setups, setup: usize) -> Obs
     }
 }
 
-/// The arcs in the image, by what they are the image of.
+/// The arcs in the image, by source.
 fn groups(draft: &PredictedImage<'_>) -> BTreeMap<ArcSource, Vec<u32>> {
     let mut groups: BTreeMap<ArcSource, Vec<u32>> = BTreeMap::new();
     for (i, arc) in draft.arcs.iter().enumerate() {
         let [start, end] = draft.ink.spans[i];
-        // What is shorter the detector drops, and so does the model.
+        // The detector drops shorter arcs, and so does the model.
         if !arc.smooth && end - start >= draft.conditions.detector.shortest {
             groups.entry(arc.source).or_default().push(i as u32);
         }
@@ -153,7 +154,7 @@ fn groups(draft: &PredictedImage<'_>) -> BTreeMap<ArcSource, Vec<u32>> {
     groups
 }
 
-/// By arc: the feature it is of.
+/// By arc: its feature.
 fn index(arcs: usize, groups: &BTreeMap<ArcSource, Vec<u32>>) -> Vec<Option<u32>> {
     let mut index = vec![None; arcs];
     for (feature, arcs) in groups.values().enumerate() {
@@ -200,7 +201,7 @@ fn sight(
     }
 }
 
-/// The attributes of what is found of an arc.
+/// The attributes of the found part of an arc.
 fn attributes(
     draft: &PredictedImage<'_>,
     outcome: &DetectionOutcome,
@@ -212,7 +213,7 @@ fn attributes(
     let (middle, scale) = frame(draft);
     let [a, b] = [from, to].map(|along| line.point_at(along));
     let d = [b[0] - a[0], b[1] - a[1]];
-    // A curve that closes has no chord: then any direction does.
+    // A closed curve has no chord: then any direction is used.
     let twice = 2.0 * d[1].atan2(d[0]);
     let mid = [0, 1].map(|i| (0.5 * (a[i] + b[i]) - middle[i]) / scale);
     let values = [
@@ -271,7 +272,7 @@ fn tuples(
         if members.len() > 2 {
             let seen = members.iter().all(found);
             let kept = seen && chain_is_kept(&chain.arcs, junctions);
-            // One way along it is as good as the other.
+            // Both directions along a chain are equivalent.
             if members.first() > members.last() {
                 members.reverse();
             }
@@ -301,7 +302,8 @@ fn chain_is_kept(arcs: &[u32], junctions: &[PredictedJunction]) -> bool {
     })
 }
 
-/// How often found ends of arcs that do not meet are near to one another.
+/// The number of near pairs of found ends of arcs without a junction, and the number of all such
+/// pairs.
 fn chance(
     draft: &PredictedImage<'_>,
     outcome: &DetectionOutcome,

@@ -1,4 +1,4 @@
-//! The model as it is handed on: a record a line (`premio.model/1`).
+//! The format of a model: one record per line (`premio.model/1`).
 
 use super::observation::{ATTRIBUTES, RelationKind};
 use super::setups::Setups;
@@ -21,13 +21,14 @@ pub enum Record {
     Feature(Box<FeatureRecord>),
     /// An aspect, in falling order of setups.
     Aspect(Aspect),
-    /// A relation, in falling order of how often it is kept.
+    /// A relation, in falling order of how often it is preserved.
     Tuple(RelationRecord),
-    /// Which features are found together.
+    /// The co-detection of features.
     Codetection(Codetection),
 }
 
-/// A part's description, and how it is read: a model is of use without the file.
+/// A part's description with the options for reading it, so that a model is usable without the
+/// file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DescriptionRecord {
@@ -35,21 +36,21 @@ pub struct DescriptionRecord {
     pub language: String,
     /// The text.
     pub text: String,
-    /// The part of the text that is meant, if it has several.
+    /// The name of the part, if the text has several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
-    /// Whether primitives with few facets are smooth ones.
+    /// Whether primitives with few facets are read as smooth ones.
     #[serde(default)]
     pub smooth: bool,
-    /// The resolution, where it is not the usual one.
+    /// The resolution, where it is not the default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<f64>,
-    /// Whether only what is proven to coincide does.
+    /// Whether only proven coincidences count.
     #[serde(default)]
     pub exact: bool,
 }
 
-/// What the model is of.
+/// The head of a model.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelHead {
@@ -59,36 +60,37 @@ pub struct ModelHead {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are distinguished from others by.
+    /// The digest of part and setups.
     pub digest: String,
     /// The setups.
     pub setups: Setups,
     /// How many.
     pub count: u64,
-    /// In how many of them nothing is seen, by reason.
+    /// The number of setups in which nothing is visible, by reason.
     pub unseen: BTreeMap<String, u64>,
-    /// How many features, aspects and relations follow.
+    /// The numbers of features, aspects and relations that follow.
     pub features: usize,
     /// See `features`.
     pub aspects: usize,
-    /// How many setups are of aspects that are not listed.
+    /// The number of setups of aspects that are not listed.
     pub other_aspects: u64,
     /// See `features`.
     pub tuples: usize,
-    /// How often relations that are not listed are visible.
+    /// The number of times that relations that are not listed are visible.
     pub other_tuples: u64,
-    /// The middle deviation of the pose: turn in radians, move in the part's unit (geometric mean over
-    /// the setups that tell it).
+    /// The mean standard deviation of the pose: rotation in radians, translation in the part's unit
+    /// (geometric mean over the setups that determine it).
     pub pose: Option<[f64; 2]>,
-    /// In how many setups the found features tell the pose.
+    /// The number of setups whose found features determine the pose.
     pub posed: u64,
-    /// How likely the ends of two features that do not meet are as near as those that do.
+    /// The probability that the ends of two features without a junction are as near as those of a
+    /// junction.
     pub chance: f64,
     /// SHA-256 of all bytes of the file, with zeros in place of these digits.
     pub sha256: String,
 }
 
-/// What stands for the digits of a digest that is not known yet.
+/// The placeholder for the digits of a digest that is not known yet.
 pub const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 /// A share with its credible interval of 95 % (Beta(½, ½) posterior).
@@ -144,25 +146,29 @@ impl Attributes {
     }
 }
 
-/// What is known of a feature.
+/// The record of a feature.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FeatureRecord {
-    /// Its place in the order of detectability, from 0.
+    /// Its rank by detectability, from 0.
     pub rank: usize,
     /// What it is the image of.
     pub source: ArcSource,
-    /// In how many setups it is whole, broken, missed, of those in which it is visible.
+    /// The numbers of setups in which it is whole, broken and missed, of those in which it is
+    /// visible.
     pub states: [u64; 3],
-    /// How likely it is found in a setup.
+    /// The probability that it is found in a setup.
     pub detectability: Rate,
-    /// How likely it is found where it is visible.
+    /// The probability that it is found where it is visible.
     pub detectability_visible: Rate,
-    /// How likely it is distinguished from all others of its aspect by its attributes, where it is found.
+    /// The probability that its attributes distinguish it from all others of its aspect, where it
+    /// is found.
     pub reliability: Rate,
-    /// By how much the deviations of the pose, turn and move, grow without it (geometric mean).
+    /// The factors by which the standard deviations of the pose, rotation and translation, grow
+    /// without it (geometric mean).
     pub accuracy: Option<[f64; 2]>,
-    /// How often none, one, two.. fragments of it are found; the last is seven and more.
+    /// The numbers of times that none, one, two … fragments of it are found; the last bin is seven
+    /// and more.
     pub fragments: [u64; FRAGMENTS],
     /// The mean share of its visible length that is found.
     pub share: f64,
@@ -184,39 +190,40 @@ pub struct AspectFeature {
     pub attributes: Option<Attributes>,
 }
 
-/// What is known of an aspect.
+/// The record of an aspect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Aspect {
-    /// Its place in the order of setups, from 0.
+    /// Its rank by the number of setups, from 0.
     pub rank: usize,
-    /// How many setups are of it.
+    /// The number of its setups.
     pub setups: u64,
-    /// The mean direction of the camera from the part's middle.
+    /// The mean direction of the camera from the part's centre.
     pub view: Vec<f64>,
     /// Its features, by rank.
     pub features: Vec<AspectFeature>,
 }
 
-/// What is known of a relation.
+/// The record of a relation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RelationRecord {
-    /// Its place in the order of how often it is kept.
+    /// Its rank by how often it is preserved.
     pub rank: usize,
     /// Its kind.
     pub kind: RelationKind,
     /// The ranks of its features.
     pub members: Vec<usize>,
-    /// In how many setups it is visible, all its members are found, and it is kept.
+    /// The numbers of setups in which it is visible, all its members are found, and it is
+    /// preserved.
     pub counts: [u64; 3],
-    /// How likely it is kept where its members are found.
+    /// The probability that it is preserved where its members are found.
     pub kept: Rate,
-    /// How likely it would be by chance.
+    /// Its probability by chance.
     pub chance: f64,
 }
 
-/// A feature in the tree of which are found together.
+/// A feature in the co-detection tree.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CodetectionNode {
@@ -226,13 +233,13 @@ pub struct CodetectionNode {
     pub parent: Option<usize>,
     /// Its mutual information with that, in nats.
     pub information: f64,
-    /// How likely it is not visible, missed, found, by itself.
+    /// The marginal probabilities that it is not visible, missed and found.
     pub marginal: Vec<f64>,
-    /// By the parent's state: how likely it is not visible, missed, found.
+    /// By the parent's state: the probabilities that it is not visible, missed and found.
     pub table: Vec<Vec<f64>>,
 }
 
-/// Which features are found together: a tree of dependences (Chow and Liu 1968).
+/// The co-detection of features: a tree of dependences (Chow and Liu 1968).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Codetection {
@@ -240,7 +247,7 @@ pub struct Codetection {
     pub tree: Vec<CodetectionNode>,
 }
 
-/// The records of a summary, whose two rounds are done.
+/// The records of a summary after its two rounds.
 pub fn records(
     summary: &Summary,
     (part, description): (&str, &DescriptionRecord),
@@ -305,7 +312,7 @@ fn feature(rank: usize, source: ArcSource, sums: &FeatureSums, setups: u64) -> F
 fn aspects(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<Aspect> {
     let mut all: Vec<&AspectSums> = summary.aspects.values().collect();
     all.sort_by_key(|sums| std::cmp::Reverse(sums.setups));
-    let told = |(i, sums): (usize, &AspectSums)| {
+    let record = |(i, sums): (usize, &AspectSums)| {
         let mut features: Vec<AspectFeature> = sums
             .features
             .iter()
@@ -327,10 +334,10 @@ fn aspects(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<Aspect> 
             features,
         }
     };
-    all.into_iter().enumerate().map(told).collect()
+    all.into_iter().enumerate().map(record).collect()
 }
 
-/// How likely so many features that do not meet look as if they did.
+/// The probability that a number of features without a junction appear to have one.
 fn chance(summary: &Summary, members: usize) -> f64 {
     let pair = Proportion::new(summary.chance[0], summary.chance[1])
         .unwrap_or_default()

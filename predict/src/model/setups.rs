@@ -9,29 +9,30 @@ use crate::statistics::hash;
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Points on a sphere about the middle of the part.
+/// Points on a sphere about the centre of the part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetupSphere {
     /// Its radius, in the part's unit; three times that of the part's own ball if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// How points are laid on it.
+    /// The lattice of the points.
     #[serde(default)]
     pub lattice: Lattice,
-    /// How many points.
+    /// The number of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<usize>,
     /// Or the angle between neighbours, in degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
-    /// The directions from the middle that are meant; all if there is none.
+    /// The cones of directions from the centre that contain the points; all directions if there is
+    /// none.
     #[serde(default)]
     pub cones: Vec<ViewCone>,
 }
 
 impl SetupSphere {
-    /// The directions from the middle of the part.
+    /// The directions from the centre of the part.
     fn directions(&self, key: &str) -> Result<Vec<Vector3<f64>>, SetupError> {
         if let Some(radius) = self.radius {
             above_zero(&format!("{key}.radius"), radius)?;
@@ -53,7 +54,7 @@ impl SetupSphere {
                 SphereError::NoCount | SphereError::TooMany if self.angle.is_some() => "angle",
                 SphereError::NoCount | SphereError::TooMany => "count",
             };
-            SetupError::value(format!("{key}.{name}"), format!("is of no use: {error}"))
+            SetupError::value(format!("{key}.{name}"), format!("is invalid: {error}"))
         };
         points(self.lattice, sampling, &self.cones).map_err(failed)
     }
@@ -67,14 +68,14 @@ impl SetupSphere {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SetupToml")]
 pub struct Setups {
-    /// What they share.
+    /// The common conditions.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// Where cameras are, all of which look at the middle of the part.
+    /// The positions of the cameras, all of which look at the centre of the part.
     pub viewing: SetupSphere,
-    /// Where the light is that moves; none moves if it is not given.
+    /// The positions of the moving light; no light moves if it is not given.
     pub illumination: Option<SetupSphere>,
-    /// Lights that stand still.
+    /// The fixed lights.
     #[serde(rename = "light")]
     pub lights: Vec<Light>,
     #[serde(skip)]
@@ -142,7 +143,7 @@ impl Setups {
         }
     }
 
-    /// How many there are: every camera with every light.
+    /// The number of setups: every camera with every light.
     pub fn len(&self) -> usize {
         self.views.len().saturating_mul(self.moving.len().max(1))
     }
@@ -152,21 +153,21 @@ impl Setups {
         self.len() == 0
     }
 
-    /// The direction of the camera of a setup, and of the light that moves.
+    /// The directions of the camera and of the moving light of a setup.
     pub fn directions(&self, index: usize) -> [Option<Vector3<f64>>; 2] {
         let lights = self.moving.len().max(1);
         let view = self.views.get(index / lights).copied();
         [view, self.moving.get(index % lights).copied()]
     }
 
-    /// Where the cameras are, about a part.
+    /// The positions of the cameras about a part.
     pub fn eyes(&self, subject: &PreparedPart<'_>) -> Vec<Point3<f64>> {
         let radius = self.viewing.radius_about(subject);
         let about = |direction: &Vector3<f64>| subject.centre + direction * radius;
         self.views.iter().map(about).collect()
     }
 
-    /// Where the light is that moves, about a part.
+    /// The positions of the moving light about a part.
     pub fn moving_lights(&self, subject: &PreparedPart<'_>) -> Vec<Point3<f64>> {
         let radius = self.illumination.as_ref().map(|s| s.radius_about(subject));
         let at = |direction: &Vector3<f64>| Some(subject.centre + direction * radius?);
@@ -179,7 +180,7 @@ impl Setups {
         self.looking(view.unwrap_or_else(Vector3::x), light, index, subject)
     }
 
-    /// The setup with the camera and the light in any directions.
+    /// The setup with the camera and the light in given directions.
     pub fn looking(
         &self,
         view: Vector3<f64>,
@@ -188,7 +189,7 @@ impl Setups {
         subject: &PreparedPart<'_>,
     ) -> Setup {
         let eye: Point3<f64> = subject.centre + view * self.viewing.radius_about(subject);
-        // Up is z, and over the poles, where that is no direction, x as next to them.
+        // Up is z; over the poles, where z has no direction in the image, it is x, as near them.
         let level = view.x.hypot(view.y);
         let up = if level > POLE {
             Vector3::z()
@@ -212,7 +213,7 @@ impl Setups {
     }
 }
 
-/// So near to the poles up is another direction.
+/// The distance from the poles within which up is another direction.
 const POLE: f64 = 1.0 / 4096.0;
 
 #[cfg(test)]
@@ -233,12 +234,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_told() {
-        let told = |text: &str| Setups::from_toml(text).unwrap_err().to_string();
-        assert!(told("seed = 1\n").contains("`viewing`"));
-        assert!(told("[viewing]\nlattice = \"icosahedral\"\n").contains("`viewing.count`"));
-        assert!(told("[viewing]\ncount = 0\n").contains("`viewing.count`"));
-        assert!(told("ambient = 0\n[viewing]\ncount = 3\n").contains("no light"));
-        assert!(told("[viewing]\ncount = 3\n[camera]\neye = [1, 2, 3]\n").contains("`camera`"));
+    fn missing_keys_are_reported() {
+        let message = |text: &str| Setups::from_toml(text).unwrap_err().to_string();
+        assert!(message("seed = 1\n").contains("`viewing`"));
+        assert!(message("[viewing]\nlattice = \"icosahedral\"\n").contains("`viewing.count`"));
+        assert!(message("[viewing]\ncount = 0\n").contains("`viewing.count`"));
+        assert!(message("ambient = 0\n[viewing]\ncount = 3\n").contains("no light"));
+        assert!(message("[viewing]\ncount = 3\n[camera]\neye = [1, 2, 3]\n").contains("`camera`"));
     }
 }

@@ -1,4 +1,4 @@
-//! Sums over observations: the same whichever way the setups were split among shards.
+//! Sums over observations. They do not depend on how the setups were split among shards.
 
 use super::observation::{
     ATTRIBUTES, FeatureObservation, Observation, RelationKind, RelationObservation,
@@ -9,26 +9,28 @@ use crate::statistics::{Histogram, Moments, Pairs, Proportion, hash};
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 
-/// The bins of fragments: none, one and so on, and more.
+/// The number of bins for fragments: none, one and so on, and more.
 pub const FRAGMENTS: usize = 8;
-/// How many aspects are kept apart; what else there is counts for the features alone.
+/// The greatest number of separate aspects; the observations of further ones count only for the
+/// features.
 const MOST_ASPECTS: usize = 1024;
-/// How many relations are kept apart.
+/// The greatest number of separate relations.
 const MOST_TUPLES: usize = 1 << 16;
-/// For how many features it is counted which are found together.
+/// The greatest number of features whose co-detection is counted.
 pub(super) const MAX_PAIRED: usize = 256;
-/// How often a feature has to be found in an aspect for others to be matched to it.
+/// How often a feature has to be found in an aspect before others are matched to it.
 const LEARNT: u64 = 3;
-/// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and of
-/// the cosine and the sine.
+/// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and
+/// of the cosine and the sine.
 pub const FLOOR: [f64; ATTRIBUTES] = [0.0001, 0.0001, 0.0025, 0.0025, 0.0025];
 
-/// What is counted of a feature by itself and in every aspect.
+/// The counts of a feature in total and in every aspect.
 #[derive(Clone, Debug, Default)]
 pub struct SightSums {
-    /// In how many setups it is whole, broken and missed, of those in which it is visible.
+    /// The numbers of setups in which it is whole, broken and missed, of those in which it is
+    /// visible.
     pub states: [u64; 3],
-    /// The attributes of what is found.
+    /// The attributes of the found parts.
     pub attributes: Moments<ATTRIBUTES>,
 }
 
@@ -38,7 +40,7 @@ impl SightSums {
         self.states.iter().sum()
     }
 
-    /// In how many it is found, whole or in part.
+    /// The number of setups in which it is found, whole or in part.
     pub fn found(&self) -> u64 {
         self.states[0] + self.states[1]
     }
@@ -46,24 +48,24 @@ impl SightSums {
     fn add(&mut self, sight: &FeatureObservation) {
         self.states[sight.state.index()] += 1;
         if let Some(attributes) = &sight.attributes {
-            // What is out of bounds, which no attribute is, is left out of the mean.
+            // Values out of bounds, which no attribute has, are left out of the mean.
             let _ = self.attributes.record(attributes);
         }
     }
 }
 
-/// What is counted of a feature.
+/// The counts of a feature.
 #[derive(Clone, Debug, Default)]
 pub struct FeatureSums {
-    /// What is counted in every aspect, too.
+    /// The counts that aspects have, too.
     pub sights: SightSums,
-    /// How many fragments are found.
+    /// The numbers of fragments that are found.
     pub fragments: Histogram<FRAGMENTS>,
     /// The share that is found.
     pub share: Moments<1>,
-    /// The logarithms by which the pose's deviations grow without it.
+    /// The logarithms of the factors by which the pose's deviations grow without it.
     pub growth: Moments<2>,
-    /// Of the times that it was found and put to the test, how often it was distinguished from all others.
+    /// The proportion of tests in which it was distinguished from all others, where it was found.
     pub reliability: Proportion,
 }
 
@@ -71,7 +73,7 @@ impl FeatureSums {
     fn add(&mut self, sight: &FeatureObservation) {
         self.sights.add(sight);
         self.fragments.record(sight.fragments);
-        // What is out of bounds, which no share is, is left out of the mean.
+        // Values out of bounds, which no share has, are left out of the mean.
         let _ = self.share.record(&[sight.share]);
         if let Some(growth) = sight
             .growth
@@ -82,28 +84,28 @@ impl FeatureSums {
     }
 }
 
-/// What is counted of an aspect: setups that see the same edges and limbs.
+/// The counts of an aspect: setups that see the same edges and limbs.
 #[derive(Clone, Debug, Default)]
 pub struct AspectSums {
     /// How many setups.
     pub setups: u64,
     /// The sum of the cameras' directions.
     pub view: Moments<3>,
-    /// What is counted of the features in it. Aspects are many: a map's nodes have room for many
-    /// sums, so that these are kept outside of them.
+    /// The counts of its features. They are boxed, because there are many aspects and a map's nodes
+    /// would reserve space for many sums.
     pub features: BTreeMap<ArcSource, Box<SightSums>>,
-    /// The same of the setups that are learnt from, to match the others by.
+    /// The counts from the training setups, to which the others are matched.
     learnt: BTreeMap<ArcSource, Box<SightSums>>,
 }
 
-/// What is counted of a relation.
+/// The counts of a relation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TupleSums {
     /// In how many setups it is visible.
     pub visible: u64,
-    /// In how many all its members are found.
+    /// The number of setups in which all its members are found.
     pub seen: u64,
-    /// In how many of those it holds between what is found.
+    /// The number of those in which it is preserved between the found parts.
     pub kept: u64,
 }
 
@@ -112,34 +114,34 @@ pub struct TupleSums {
 pub struct Summary {
     /// How many setups.
     pub setups: u64,
-    /// Why in some of them nothing is seen, and how many these are.
+    /// The numbers of setups in which nothing is visible, by reason.
     pub unseen: BTreeMap<String, u64>,
     /// By feature.
     pub features: BTreeMap<ArcSource, FeatureSums>,
     /// By the edges and limbs that are visible.
     pub aspects: BTreeMap<Vec<ArcSource>, AspectSums>,
-    /// How many setups are of aspects beyond those that are kept apart.
+    /// The number of setups of aspects beyond the separate ones.
     pub other_aspects: u64,
     /// By relation: its kind and its features.
     pub tuples: BTreeMap<(RelationKind, Vec<ArcSource>), TupleSums>,
-    /// How often relations beyond those that are kept apart are visible.
+    /// The number of times that relations beyond the separate ones are visible.
     pub other_tuples: u64,
-    /// How often ends are near to one another by chance, of how many pairs.
+    /// The number of pairs of ends that are near by chance, and the number of all such pairs.
     pub chance: [u64; 2],
-    /// The logarithms of the pose's deviations: turn and move.
+    /// The logarithms of the pose's standard deviations: rotation and translation.
     pub pose: Moments<2>,
-    /// The features that are counted together.
+    /// The features whose co-detection is counted.
     pub paired: Vec<ArcSource>,
-    /// How often they are not visible, missed and found together.
+    /// The joint counts of their states: not visible, missed and found.
     pub pairs: Option<Pairs<3>>,
 }
 
-/// Whether a setup is learnt from, or put to the test.
+/// Whether a setup is for training; the others are for testing.
 fn is_learnt(setup: usize) -> bool {
     hash(setup as u64, 0, 2) & 1 == 0
 }
 
-/// The edges and limbs that are visible: their aspect.
+/// The aspect of an observation: the visible edges and limbs.
 fn aspect(observation: &Observation) -> Vec<ArcSource> {
     let is_outline = |s: &&ArcSource| matches!(s, ArcSource::Edge { .. } | ArcSource::Limb { .. });
     let sources = observation.sights.iter().map(|s| &s.source);
@@ -199,7 +201,7 @@ impl Summary {
         }
     }
 
-    /// The features in falling order of how often they are found.
+    /// The features by falling number of setups in which they are found.
     pub fn ranked(&self) -> Vec<ArcSource> {
         let mut all: Vec<(u64, ArcSource)> = self
             .features
@@ -233,7 +235,7 @@ impl Summary {
         };
         let states: Vec<u8> = self.paired.iter().map(state).collect();
         if let Some(pairs) = &mut self.pairs {
-            // There are as many states as features.
+            // The number of states equals the number of features.
             let _ = pairs.observe(&states);
         }
         if !is_learnt(observation.setup) {
@@ -241,7 +243,7 @@ impl Summary {
         }
     }
 
-    /// Matches what an observation found to the features of its aspect by their attributes.
+    /// Tests an observation: matches the found features to those of its aspect by their attributes.
     fn test(&mut self, observation: &Observation) {
         let Some(sums) = self.aspects.get(&aspect(observation)) else {
             return;
@@ -269,11 +271,11 @@ impl Summary {
     }
 }
 
-/// How like a feature some attributes are.
+/// The likelihood of attributes under a feature.
 struct Likeness {
     mean: SVector<f64, ATTRIBUTES>,
     inverse: SMatrix<f64, ATTRIBUTES, ATTRIBUTES>,
-    /// The logarithm of what does not depend on the attributes.
+    /// The logarithm of the factors that do not depend on the attributes.
     weight: f64,
 }
 
@@ -291,7 +293,7 @@ impl Likeness {
         })
     }
 
-    /// The logarithm of the probability of being found with these attributes, but for a constant.
+    /// The log-probability of being found with these attributes, up to a constant.
     fn of_value(&self, value: &SVector<f64, ATTRIBUTES>) -> f64 {
         let off = value - self.mean;
         self.weight - 0.5 * off.dot(&(self.inverse * off))

@@ -1,4 +1,4 @@
-//! The five levels, as they are handed on (`premio.prediction/1`).
+//! The five levels of a prediction (`premio.prediction/1`).
 
 use super::predicted_image::{DetectionOutcome, PredictedImage};
 use crate::feature::contrast::{Contrast, sides};
@@ -20,7 +20,7 @@ pub const SCHEMA: &str = "premio.prediction/1";
 pub struct Prediction {
     /// [`SCHEMA`].
     pub schema: &'static str,
-    /// The image, and the conditions that make it.
+    /// The image, and its conditions.
     pub image: ImageLevel,
     /// The part in it.
     pub object: ObjectLevel,
@@ -30,11 +30,11 @@ pub struct Prediction {
     pub boundaries: Vec<BoundaryLevel>,
     /// The arcs that boundaries consist of, by id.
     pub arcs: Vec<ArcLevel>,
-    /// What the detector makes of the image, by id.
+    /// The segments that the detector finds, by id.
     pub segments: Vec<ImageSegment>,
 }
 
-/// The image level: under which conditions the image is made.
+/// The image level: the conditions of the image.
 #[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ImageLevel {
     /// The setup.
@@ -47,26 +47,26 @@ pub struct ImageLevel {
     pub r: [[f64; 3]; 3],
     /// The part's origin in the camera's frame.
     pub t: [f64; 3],
-    /// The difference of grey levels that the detector's threshold takes.
+    /// The difference of grey levels that the detector's threshold needs.
     pub contrast_needed: f64,
-    /// Over how many draws of the noise chances are told.
+    /// The number of noise draws from which chances are estimated.
     pub draws: u32,
 }
 
-/// The object level: what of the part appears.
+/// The object level: the visible part.
 #[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ObjectLevel {
     /// The least and the greatest column and row of its arcs in the image.
     pub bounds: [[f64; 2]; 2],
     /// The regions that show it.
     pub regions: Vec<u32>,
-    /// The arcs that may be found: all but where the normal does not jump.
+    /// The arcs that may be found: all but smooth ones.
     pub features: Vec<u32>,
-    /// Where arcs meet.
+    /// The junctions of arcs.
     pub junctions: Vec<PredictedJunction>,
-    /// Arcs that follow one another through junctions of two.
+    /// Chains of arcs through junctions of two.
     pub chains: Vec<ArcChain>,
-    /// Three arcs, the middle one of which meets the others at its ends.
+    /// Three arcs, the middle one of which has a junction with the others at its ends.
     pub triplets: Vec<[u32; 3]>,
     /// The closed boundaries.
     pub loops: Vec<u32>,
@@ -79,7 +79,7 @@ pub struct ObjectLevel {
 pub struct RegionLevel {
     /// Its place in the list.
     pub id: u32,
-    /// The face that is seen in it; none is the background.
+    /// The face that is visible in it; none for the background.
     pub face: Option<u32>,
     /// The lights that reach it.
     pub lit: Vec<u32>,
@@ -128,7 +128,7 @@ pub enum ArcGeometry {
     },
 }
 
-/// How likely an arc is whole, broken or missed.
+/// The probabilities that an arc is whole, broken or missed.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Chances {
     /// In one piece.
@@ -144,9 +144,9 @@ pub struct Chances {
 pub struct ArcPiece {
     /// The range of the curve's parameter.
     pub t: [f64; 2],
-    /// From where to where along the arc, in pixels.
+    /// The range along the arc, in pixels.
     pub along: [f64; 2],
-    /// The detector's segments that it is made of.
+    /// The segments of the detector that form it.
     pub segments: Vec<u32>,
 }
 
@@ -155,15 +155,16 @@ pub struct ArcPiece {
 pub struct ArcLevel {
     /// Its place in the list.
     pub id: u32,
-    /// What it is the image of.
+    /// Its source.
     pub source: ArcSource,
-    /// The contour of the view that it is a piece of.
+    /// The contour of the view from which it is cut.
     pub contour: Option<u32>,
-    /// The range of the parameter of the curve in space; of a shadow's boundary that of what casts it.
+    /// The range of the parameter of the curve in space; for a shadow's boundary that of the curve
+    /// that casts it.
     pub t: [f64; 2],
     /// The regions to its left and to its right, from stop to stop.
     pub sides: Vec<[u32; 2]>,
-    /// Whether the normal does not jump across it.
+    /// Whether the normal is continuous across it.
     pub smooth: bool,
     /// Its form.
     pub geometry: ArcGeometry,
@@ -171,19 +172,19 @@ pub struct ArcLevel {
     pub length: f64,
     /// The grey levels on both sides along it, before noise and steps.
     pub contrast: Vec<Contrast>,
-    /// What is found of it.
+    /// The pieces of it that are found.
     pub fragments: Vec<ArcPiece>,
-    /// The share of it that is found, its ends left out.
+    /// The found share of it without its ends.
     pub share: f64,
     /// Its most frequent state.
     pub state: DetectionState,
-    /// How likely each state is.
+    /// The probabilities of the states.
     pub chances: Chances,
     /// Why it is not whole.
     pub reason: Option<Reason>,
 }
 
-/// What the detector makes of edge pixels, and which arcs these are of.
+/// A segment of the detector, with the arcs of its edge pixels.
 #[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct ImageSegment {
     /// Its place in the list.
@@ -196,7 +197,7 @@ pub struct ImageSegment {
     pub arcs: Vec<u32>,
 }
 
-/// The prediction of a draft's image.
+/// The prediction of an image.
 pub fn prediction(draft: &PredictedImage<'_>, setup: &Setup) -> Prediction {
     let outcome = draft.outcome();
     let measure = draft.measure();

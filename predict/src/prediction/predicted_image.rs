@@ -1,4 +1,4 @@
-//! What a prediction is made of: arcs, regions, and the levels of the pixels next to the arcs.
+//! The data of a prediction: arcs, regions, and the levels of the pixels next to the arcs.
 
 use crate::feature::arc_raster::ArcRaster;
 use crate::feature::contrast::{Contrast, contrast};
@@ -22,7 +22,7 @@ use std::cell::RefCell;
 /// What a prediction is made of.
 #[derive(Debug)]
 pub struct PredictedImage<'s> {
-    /// The part before its camera and under its lights.
+    /// The part in front of its camera and under its lights.
     pub stage: &'s LitScene<'s>,
     /// The conditions.
     pub conditions: &'s Conditions,
@@ -41,7 +41,7 @@ pub struct PredictedImage<'s> {
     memory: RefCell<Memory>,
 }
 
-/// The memory of one prediction, used again by the next one.
+/// The memory of one prediction, reused by the next one.
 #[derive(Debug, Default)]
 pub struct Memory {
     levels: Vec<f32>,
@@ -51,20 +51,20 @@ pub struct Memory {
     detector: Workspace,
 }
 
-/// What a detector finds of each arc, over draws of the noise.
+/// The detections of each arc over noise draws.
 #[derive(Clone, Debug)]
 pub struct DetectionOutcome {
-    /// What it finds in one draw, which for each arc shows its most frequent state.
+    /// The detection in one draw, in which each arc has its most frequent state.
     pub detection: Detection,
-    /// By arc: what is found of it in the first draw with its most frequent state.
+    /// By arc: its detection in the first draw with its most frequent state.
     pub evidence: Vec<DetectedArc>,
-    /// By arc: how often each state, in the order of [`DetectionState::ALL`].
+    /// By arc: the number of each state, in the order of [`DetectionState::ALL`].
     pub counts: Vec<[u32; 3]>,
 }
 
-/// Asks something of the draft of a part's image in a setup.
+/// Evaluates a function on the predicted image of a part in a setup.
 ///
-/// `finishes` are those of the setup's conditions, where they are known already, as they are of many
+/// `finishes` are those of the setup's conditions, where they are already known, as for many
 /// setups.
 pub fn with_draft<T>(
     subject: &PreparedPart<'_>,
@@ -91,7 +91,8 @@ pub fn with_draft<T>(
 }
 
 impl<'s> PredictedImage<'s> {
-    /// The draft of a stage's image under conditions, in memory that [`Self::into_memory`] gives back.
+    /// The predicted image of a scene under conditions, in memory that [`Self::into_memory`]
+    /// returns.
     fn within(
         stage: &'s LitScene<'s>,
         finishes: &'s Finishes,
@@ -141,7 +142,7 @@ impl<'s> PredictedImage<'s> {
         })
     }
 
-    /// The memory it is kept in.
+    /// Returns its memory.
     fn into_memory(self) -> Memory {
         Memory {
             levels: self.image.levels,
@@ -150,7 +151,7 @@ impl<'s> PredictedImage<'s> {
         }
     }
 
-    /// What the detector finds of each arc.
+    /// The detections of each arc over noise draws.
     pub fn outcome(&self) -> DetectionOutcome {
         let sensor = &self.conditions.sensor;
         let noisy = sensor.electrons > 0.0 || sensor.read_noise > 0.0;
@@ -200,8 +201,7 @@ impl<'s> PredictedImage<'s> {
         }
     }
 
-    /// What the detector finds of each arc in an image of the same setup: predicted, rendered or
-    /// taken.
+    /// The detections of each arc in an image of the same setup: predicted, rendered or taken.
     pub fn evidence_in(&self, image: &Grey, domain: &PixelMask) -> (Detection, Vec<DetectedArc>) {
         let detector = &self.conditions.detector;
         let work = &mut self.memory.borrow_mut().detector;
@@ -235,7 +235,7 @@ impl<'s> PredictedImage<'s> {
         reason(arc, evidence, contrast, &self.ink, measure)
     }
 
-    /// What reasons are told by.
+    /// The quantities that determine reasons.
     pub fn measure(&self) -> Measure {
         let (sensor, detector) = (&self.conditions.sensor, &self.conditions.detector);
         Measure {
@@ -247,7 +247,7 @@ impl<'s> PredictedImage<'s> {
     }
 }
 
-/// The most frequent state; of two the better one.
+/// The most frequent state; of equal ones the better one.
 pub fn usual(counts: &[u32; 3]) -> DetectionState {
     let most = counts.iter().max().copied().unwrap_or(0);
     let found = DetectionState::ALL
@@ -256,7 +256,7 @@ pub fn usual(counts: &[u32; 3]) -> DetectionState {
     found.unwrap_or(DetectionState::Missed)
 }
 
-/// The gradient that the detector finds of a step of one level.
+/// The gradient that the detector finds at a step of one level.
 fn step_response(conditions: &Conditions) -> f64 {
     let reach = blur::reach(conditions.sensor.blur);
     let half = 2 * (reach + conditions.detector.radius()) + 4;
@@ -291,7 +291,7 @@ fn step_response(conditions: &Conditions) -> f64 {
     }
 }
 
-/// Where the part is, if none of its arcs is in the image.
+/// The position of the part, if none of its arcs is in the image.
 fn out_of_sight(stage: &LitScene<'_>, [width, height]: [usize; 2]) -> String {
     let projection = stage.view.scene.projection;
     let middle = [width, height].map(|n| 0.5 * (n as f64 - 1.0));
@@ -303,7 +303,7 @@ fn out_of_sight(stage: &LitScene<'_>, [width, height]: [usize; 2]) -> String {
     }
     let p = projection.project(&stage.subject.centre);
     format!(
-        "its middle falls on ({:.0}, {:.0}), the image has {width} x {height} pixels",
+        "its centre projects to ({:.0}, {:.0}), and the image has {width} x {height} pixels",
         p.x, p.y
     )
 }

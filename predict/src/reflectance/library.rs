@@ -1,7 +1,7 @@
 //! Materials by name.
 //!
-//! Only `n` and `k` are measured, by whom each says in [`dispersion`](super::dispersion).
-//! The roughness `m`, the fractions `s` and `d`, the ambient reflectance, and `R_d` where it is given,
+//! Only `n` and `k` are measured, by whom each says in [`dispersion`](super::dispersion). The
+//! roughness `m`, the fractions `s` and `d`, the ambient reflectance, and `R_d` where it is given,
 //! are our choice of a likely specimen: they depend on how a surface was made, and whoever knows
 //! better writes them down.
 
@@ -9,7 +9,7 @@ use super::dispersion::{ACRYLIC, ALUMINIUM, CELLULOSE, COPPER, Dispersion, IRON}
 use super::{Constants, Material, Optics, SpecularForm};
 use std::ops::RangeInclusive;
 
-/// The wavelength in nanometres of a light that tells none: green.
+/// The wavelength in nanometres of a light that specifies none: green.
 pub const GREEN: f64 = 550.0;
 
 /// The names of the library.
@@ -17,13 +17,13 @@ pub const GREEN: f64 = 550.0;
 pub enum Named {
     /// Aluminium, milled. At 550 nm F(0) = 0.915.
     Aluminium,
-    /// Steel, ground, by the constants of iron. At 550 nm F(0) = 0.512; steels differ from iron, and
-    /// among themselves, by some hundredths.
+    /// Steel, ground, by the constants of iron. At 550 nm F(0) = 0.512; steels differ from iron,
+    /// and among themselves, by some hundredths.
     Steel,
     /// Copper, milled. At 450 nm F(0) = 0.54, at 550 nm 0.62, at 650 nm 0.94: it is red.
     Copper,
-    /// A plastic, pigmented light grey, moulded: polymethyl methacrylate. At 550 nm F(0) = 0.039. Its
-    /// pigment makes it diffuse, so `R_d` is given.
+    /// A plastic, pigmented light grey, moulded: polymethyl methacrylate. At 550 nm F(0) = 0.039.
+    /// Its pigment makes it diffuse, so `R_d` is given.
     Plastic,
     /// White paper, by its fibres of cellulose. At 550 nm F(0) = 0.044. `R_d` is given: light is
     /// scattered among the fibres, not at their surface.

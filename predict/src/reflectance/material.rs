@@ -1,4 +1,4 @@
-//! What is known of a surface's material: the constants of the physical object model.
+//! The constants of a surface's material in the physical object model.
 
 use super::{Optics, Polarisation, Reflectance, SurfaceFinish};
 use nalgebra::Vector3;
@@ -56,7 +56,7 @@ pub struct Constants {
     pub form: SpecularForm,
 }
 
-/// Why constants are of no material.
+/// Why constants are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MaterialError {
     /// A constant is out of its range, or no number.
@@ -64,11 +64,11 @@ pub enum MaterialError {
     OutOfRange {
         /// The constant's key.
         key: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// The least that it may be.
+        /// The least valid value.
         least: f64,
-        /// The most that it may be.
+        /// The greatest valid value.
         most: f64,
     },
     /// The specular and the diffuse fraction are more than the whole.
@@ -144,7 +144,7 @@ impl Material {
             .unwrap_or_else(|| self.optics().normal() * FRAC_1_PI)
     }
 
-    /// The material made ready to be asked of many directions.
+    /// The material prepared for the evaluation in many directions.
     pub fn surface(&self) -> SurfaceFinish {
         SurfaceFinish::new(self)
     }

@@ -1,11 +1,12 @@
-//! A surface as many small mirrors: how they lie, and how much of each is in the light and in sight.
+//! Microfacets: a surface as many small mirrors, with the distribution of their normals and their
+//! masking and shadowing.
 
 /// Beckmann's distribution D = exp(−(tan α/m)²)/(m² cos⁴α) of the facets' normals.
 ///
-/// `m` is the root mean square slope, `cos_alpha` the cosine of the angle between the facets' normal
-/// and that of the surface. Its integral over the hemisphere, each direction by its cosine, is π
-/// (Beckmann and Spizzichino, 1963; Cook and Torrance, 1982, equation 6). Nothing where the facet
-/// looks into the surface.
+/// `m` is the root mean square slope, `cos_alpha` the cosine of the angle between the facets'
+/// normal and that of the surface. Its integral over the hemisphere, each direction by its cosine,
+/// is π (Beckmann and Spizzichino, 1963; Cook and Torrance, 1982, equation 6). Nothing where the
+/// facet looks into the surface.
 #[inline]
 pub fn distribution(m: f64, cos_alpha: f64) -> f64 {
     let cos2 = cos_alpha * cos_alpha;

@@ -1,4 +1,5 @@
-//! The physical object model: how much of the light that comes to a surface goes to the sensor.
+//! The physical object model: the share of the incident light that a surface reflects to the
+//! sensor.
 //!
 //! The model of Cook and Torrance (ACM Transactions on Graphics 1, 1982), with the Fresnel term for
 //! light that is polarised of Yi, Haralick and Shapiro (PREMIO, section 3.1.2): of each light the

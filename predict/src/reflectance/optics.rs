@@ -9,7 +9,7 @@ pub struct Optics {
     pub k: f64,
 }
 
-/// The shares of the intensity that a smooth plane reflects, each from 0 to 1.
+/// The reflected shares of the intensity at a smooth plane, each from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectivity {
     /// Of light whose electric field lies in the plane of incidence: ρ∥.
@@ -62,8 +62,8 @@ impl Reflectivity {
 }
 
 impl Optics {
-    /// The reflectivity for light that comes at the angle θ to the normal, given by its cosine, which
-    /// is held to 0 to 1.
+    /// The reflectivity for light that comes at the angle θ to the normal, given by its cosine,
+    /// which is held to 0 to 1.
     ///
     /// The form without complex numbers (Siegel and Howell, Thermal Radiation Heat Transfer, 1981;
     /// Cook and Torrance, 1982, appendix): with c = n² − k² − sin²θ, a² and b² are

@@ -1,11 +1,11 @@
-//! A material made ready to be asked of many directions.
+//! A material prepared for the evaluation in many directions.
 
 use super::microfacet::distribution;
 use super::{Material, Optics, Polarisation, SpecularForm};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// What a surface reflects of a light into a direction: bidirectional reflectances, in 1/sr.
+/// The bidirectional reflectances of a surface, in 1/sr.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflectance {
     /// The specular part, `s R_s`.
@@ -14,7 +14,7 @@ pub struct Reflectance {
     pub total: f64,
 }
 
-/// A material with what does not depend on the directions computed beforehand.
+/// A material with the factors that do not depend on the directions precomputed.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceFinish {
     optics: Optics,
@@ -45,12 +45,13 @@ impl SurfaceFinish {
         self.ambient
     }
 
-    /// Whether it mirrors anything.
+    /// Whether it has specular reflection.
     pub fn is_specular(&self) -> bool {
         self.specular > 0.0
     }
 
-    /// The diffuse part `d R_d` of the bidirectional reflectance, in 1/sr: the same for all directions.
+    /// The diffuse part `d R_d` of the bidirectional reflectance, in 1/sr: the same for all
+    /// directions.
     pub fn diffuse(&self) -> f64 {
         self.diffuse
     }
@@ -69,7 +70,7 @@ impl SurfaceFinish {
         polarisation: Polarisation,
     ) -> Reflectance {
         let (n_l, n_v) = (normal.dot(light), normal.dot(viewer));
-        // f64 values do not tell a smaller cosine of unit vectors from none.
+        // A smaller cosine of unit vectors is indistinguishable from zero in f64.
         if n_l <= f64::EPSILON || n_v <= f64::EPSILON {
             return Reflectance::default();
         }
@@ -93,7 +94,7 @@ impl SurfaceFinish {
         if d <= 0.0 {
             return 0.0;
         }
-        // G/((N·L)(N·V)), where the smaller cosine goes out: finite at grazing light or view.
+        // G/((N·L)(N·V)), where the smaller cosine cancels: finite at grazing light or view.
         let (small, large) = (n_l.min(n_v), n_l.max(n_v));
         let seen = if 2.0 * n_h * small < v_h {
             2.0 * n_h / (v_h * large)

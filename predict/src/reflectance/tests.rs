@@ -218,7 +218,8 @@ fn the_surface_is_the_product_of_its_terms_and_reciprocal() {
 }
 
 /// The share of all light that goes into a direction, if it comes evenly from everywhere: the
-/// integral of R (N·L) over the lights, by facets of equal shares of the cosine-weighted distribution.
+/// integral of R (N·L) over the lights, by facets of equal shares of the cosine-weighted
+/// distribution.
 fn albedo(surface: &SurfaceFinish, theta: f64, m: f64) -> f64 {
     let (slopes, turns) = (400, 200);
     let n = Vector3::z();

@@ -1,4 +1,4 @@
-//! Light sources: points, near or far, that shine in every direction.
+//! Point light sources, near or far, that shine in every direction.
 
 use super::{SetupError, above_zero, at_least_zero};
 use crate::reflectance::GREEN;
@@ -11,26 +11,26 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Light {
-    /// Where it is; or else `direction` is given.
+    /// Its position; otherwise `direction` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<[f64; 3]>,
-    /// From the part towards a light that is infinitely far.
+    /// The direction from the part to a light at infinity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// I∥, the radiance polarised along the plane of incidence.
     #[serde(default = "half")]
     pub parallel: f64,
-    /// I⊥, the radiance polarised across it.
+    /// I⊥, the radiance polarised perpendicular to it.
     #[serde(default = "half")]
     pub perpendicular: f64,
-    /// dω, the solid angle that it fills as seen from the middle of the part, in steradians.
+    /// dω, the solid angle that it subtends at the centre of the part, in steradians.
     #[serde(default = "one")]
     pub solid_angle: f64,
-    /// Whether dω falls off with the square of the distance, as it does.
+    /// Whether dω falls off with the square of the distance, as it does physically.
     #[serde(default = "yes")]
     pub falloff: bool,
-    /// The wavelength in nanometres, which the optical constants of named materials are taken at;
-    /// green of 550 nm if it is not given.
+    /// The wavelength in nanometres, at which the optical constants of named materials are
+    /// evaluated; green of 550 nm if it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wavelength: Option<f64>,
 }
@@ -71,7 +71,7 @@ impl Light {
         self.wavelength.unwrap_or(GREEN)
     }
 
-    /// Whether its values are in their ranges; it is the light number `index`.
+    /// Checks that its values are in their ranges; `index` is the number of the light.
     pub fn validate(&self, index: usize) -> Result<(), SetupError> {
         let key = |name: &str| format!("light[{index}].{name}");
         at_least_zero(&key("parallel"), self.parallel)?;
@@ -94,13 +94,13 @@ impl Light {
     }
 }
 
-/// A light, ready to shine on a part.
+/// A light prepared for a part.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSource {
     place: LightPlace,
     /// I_l.
     pub intensity: f64,
-    /// The shares of I_l that are polarised along and across the plane of incidence.
+    /// The shares of I_l that are polarised along and perpendicular to the plane of incidence.
     pub polarisation: [f64; 2],
     /// In nanometres.
     pub wavelength: f64,
@@ -109,7 +109,7 @@ pub struct LightSource {
     distance: Option<f64>,
 }
 
-/// Where a light is.
+/// The position of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightPlace {
     /// At a point.
@@ -119,7 +119,7 @@ pub enum LightPlace {
 }
 
 impl LightSource {
-    /// A light that shines on a part with this middle.
+    /// Prepares a light for a part with this centre.
     pub fn new(light: &Light, centre: &Point3<f64>) -> Self {
         let place = match (light.position, light.direction) {
             (Some(p), _) => LightPlace::Near(Point3::from(p)),
@@ -167,7 +167,7 @@ impl LightSource {
         }
     }
 
-    /// I_l dω_l at the middle of the part.
+    /// I_l dω_l at the centre of the part.
     pub fn strength(&self) -> f64 {
         self.intensity * self.solid_angle
     }

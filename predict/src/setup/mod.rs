@@ -1,4 +1,4 @@
-//! A setup: everything but the part that an image depends on.
+//! A setup: everything except the part that determines an image.
 //!
 //! Lengths are in the part's unit and frame, but for the sensor's, which are millimetres. Radiances
 //! share one arbitrary unit: what a light gives times its solid angle, per steradian.
@@ -34,10 +34,10 @@ pub enum SetupError {
     Value {
         /// The key, with the tables that hold it.
         key: String,
-        /// What is wrong with its value.
+        /// The error of its value.
         reason: String,
     },
-    /// A material by a name that is not known.
+    /// An unknown name of a material.
     #[error("no material is called \"{0}\": known are {known}", known = names())]
     Material(String),
     /// The constants of a material are not known for a light.
@@ -49,21 +49,21 @@ pub enum SetupError {
         wavelength: f64,
         /// The material's name.
         material: &'static str,
-        /// From where on its constants are known.
+        /// The least wavelength of its constants.
         from: f64,
-        /// And to where.
+        /// The greatest.
         to: f64,
     },
     /// The detector's constants are out of their range.
     #[error("the detector: {0}")]
     Detector(#[from] DetectorError),
-    /// There is no light, and nothing else that shines.
+    /// There is no light, and no ambient light.
     #[error("there is no light: a setup has a `[[light]]`, or an `ambient` above zero")]
     Dark,
 }
 
 impl SetupError {
-    /// The bytes of a text at which it is, where they are known.
+    /// The byte range of the error in a text, where it is known.
     pub fn span(&self, text: &str) -> Option<Range<usize>> {
         if let Self::Text(error) = self {
             return error.span.clone();
@@ -116,7 +116,7 @@ pub enum Finish {
     Given(#[schemars(with = "Constants")] Material),
 }
 
-/// By hand, so that what is wrong with constants is told, and not that they are no name.
+/// Written by hand, so that an error in constants is reported, and not that they are no name.
 impl<'de> Deserialize<'de> for Finish {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         struct Either;
@@ -142,8 +142,8 @@ impl<'de> Deserialize<'de> for Finish {
 }
 
 impl Finish {
-    /// The constants under light of a wavelength in nanometres; those that are given are for whatever
-    /// light there is.
+    /// The constants under light of a wavelength in nanometres; explicit constants hold for every
+    /// wavelength.
     pub fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
         match self {
             Self::Named(name) => {
@@ -172,7 +172,7 @@ pub struct FacesFinish {
     pub material: Finish,
 }
 
-/// What stands still while lights and cameras move: the conditions.
+/// The conditions: the parts of a setup that do not change while lights and cameras move.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Conditions {
@@ -182,7 +182,7 @@ pub struct Conditions {
     pub sensor: Sensor,
     /// The radiance of the surroundings, I_a.
     pub ambient: f64,
-    /// The radiance of what is seen next to the part.
+    /// The radiance of the background.
     pub background: f64,
     /// The material of the part.
     pub material: Finish,
@@ -191,7 +191,7 @@ pub struct Conditions {
     pub surfaces: Vec<FacesFinish>,
     /// The processing model.
     pub detector: Detector,
-    /// When a feature counts as whole, broken or missed.
+    /// The criteria by which a feature counts as whole, broken or missed.
     pub features: Criteria,
 }
 
@@ -229,7 +229,7 @@ impl Conditions {
         all.map(|finish| finish.material(wavelength)).collect()
     }
 
-    /// Whether the values of lights are in their ranges, also those of what they shine on.
+    /// Checks that the values of lights are in their ranges, and those of the materials under them.
     pub fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
         for (i, light) in lights.iter().enumerate() {
             light.validate(i)?;
@@ -239,15 +239,15 @@ impl Conditions {
     }
 }
 
-/// One picture's setup.
+/// The setup of one image.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Setup {
-    /// Where the camera is.
+    /// The camera.
     pub camera: Viewpoint,
     /// The lights.
     #[serde(rename = "light")]
     pub lights: Vec<Light>,
-    /// All else.
+    /// The conditions.
     #[serde(flatten)]
     pub conditions: Conditions,
 }
@@ -281,10 +281,10 @@ impl Setup {
     }
 }
 
-/// How many lights there may be: which of them a region sees is kept as bits.
+/// The greatest number of lights: the set that reaches a region is stored as bits.
 pub const MAX_LIGHTS: usize = 64;
 
-/// A number that is finite and not negative.
+/// Checks that a number is finite and not negative.
 pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {
     match x.is_finite() && x >= 0.0 {
         true => Ok(()),
@@ -295,7 +295,7 @@ pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {
     }
 }
 
-/// A number that is finite and positive.
+/// Checks that a number is finite and positive.
 pub(crate) fn above_zero(key: &str, x: f64) -> Result<(), SetupError> {
     match x.is_finite() && x > 0.0 {
         true => Ok(()),

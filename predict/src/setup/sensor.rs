@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// The most pixels an image may have.
+/// The greatest number of pixels of an image.
 const MOST_PIXELS: usize = 1 << 28;
 
 /// The constants of a sensor (section 3.2.2 of the paper), and its response.
@@ -21,14 +21,15 @@ pub struct Sensor {
     pub film: [f64; 2],
     /// R, the width and the height in pixels.
     pub resolution: [usize; 2],
-    /// How many grey levels there are.
+    /// The number of grey levels.
     pub levels: u32,
-    /// The grey level of a white diffuse surface in the middle of the part that faces all lights: the
-    /// exposure.
+    /// The exposure: the grey level of a white diffuse surface at the centre of the part that faces
+    /// all lights.
     pub white: f64,
-    /// The standard deviation of the point spread in pixels, besides a pixel's own square.
+    /// The standard deviation of the point spread in pixels, in addition to a pixel's own square.
     pub blur: f64,
-    /// How many electrons make the highest level, which sets the photon noise; 0: there is none.
+    /// The number of electrons at the highest level, which determines the photon noise; 0: there is
+    /// none.
     pub electrons: f64,
     /// The standard deviation of the read noise in grey levels.
     pub read_noise: f64,
@@ -50,7 +51,7 @@ impl Default for Sensor {
     }
 }
 
-/// The lengths that a camera may have, in millimetres.
+/// The range of a camera's lengths, in millimetres.
 const LENGTHS: [f64; 2] = [1.0 / 1_048_576.0, 1_048_576.0];
 
 fn is_length(key: &str, x: f64) -> Result<(), SetupError> {
@@ -66,7 +67,7 @@ fn is_length(key: &str, x: f64) -> Result<(), SetupError> {
 }
 
 impl Sensor {
-    /// Whether its values are in their ranges.
+    /// Checks that its values are in their ranges.
     pub fn validate(&self) -> Result<(), SetupError> {
         above_zero("sensor.focal", self.focal)?;
         above_zero("sensor.diameter", self.diameter)?;
@@ -108,10 +109,10 @@ impl Sensor {
         0.25 * PI * aperture * aperture * cosine.powi(4)
     }
 
-    /// Grey levels for each unit of radiance on the optical axis, where lights of this strength, I_l
-    /// dω_l together, expose a white surface.
+    /// Grey levels for each unit of radiance on the optical axis, where lights of this strength,
+    /// I_l dω_l together, expose a white surface.
     pub fn gain(&self, strength: f64) -> f64 {
-        // Radiance of a white diffuse surface: what falls on it over π.
+        // The radiance of a white diffuse surface is its irradiance over π.
         self.white * PI / strength
     }
 }
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_resolution_of_zero_is_told() {
+    fn a_resolution_of_zero_is_reported() {
         let sensor = Sensor {
             resolution: [640, 0],
             ..Sensor::default()

@@ -1,4 +1,4 @@
-//! Setups as they are written, in TOML.
+//! The TOML form of setups.
 
 use super::light::Light;
 use super::sensor::Sensor;
@@ -11,7 +11,8 @@ use premio_detect::Detector;
 use premio_text::Document;
 use serde::Deserialize;
 
-/// The keys of a setup's text, all of them its own, so that one that is not known is told by its place.
+/// The keys of a setup's text, all declared here, so that an unknown one is reported at its
+/// position.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetupToml {
@@ -54,7 +55,7 @@ impl SetupToml {
         Setups::new(self.conditions(), viewing, illumination, lights)
     }
 
-    /// One picture's setup.
+    /// The setup of one image.
     pub fn setup(self) -> Result<Setup, SetupError> {
         let spheres = [
             ("viewing", &self.viewing),
@@ -120,7 +121,7 @@ position = [4, 5, 6]
     }
 
     #[test]
-    fn what_is_wrong_is_told_by_its_key() {
+    fn errors_name_their_key() {
         let error = Setup::from_toml(TEXT).unwrap_err();
         assert_eq!(
             error.to_string(),

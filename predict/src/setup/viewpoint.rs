@@ -1,4 +1,4 @@
-//! Where a camera is: an eye that looks at a target, or OpenCV's matrices.
+//! The viewpoint of a camera: an eye that looks at a target, or OpenCV's matrices.
 
 use super::SetupError;
 use super::sensor::Sensor;
@@ -14,14 +14,14 @@ pub struct Viewpoint {
     /// The centre of projection.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eye: Option<[f64; 3]>,
-    /// A point on the optical axis; the middle of the part where it is not given.
+    /// A point on the optical axis; the centre of the part where it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<[f64; 3]>,
-    /// What is up in the image, as far as it can be; z where it is not given.
+    /// The direction that is up in the image as far as possible; z where it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub up: Option<[f64; 3]>,
-    /// OpenCV's camera matrix, in pixels; then the sensor's focal length and film say only how much
-    /// light there is.
+    /// OpenCV's camera matrix, in pixels; then the sensor's focal length and film only determine
+    /// the exposure.
     #[serde(rename = "K", default, skip_serializing_if = "Option::is_none")]
     pub k: Option<[[f64; 3]; 3]>,
     /// The rotation into the camera's frame: x right, y down, z into the scene.
@@ -43,15 +43,15 @@ impl Viewpoint {
         }
     }
 
-    /// Whether it is one of the two kinds, and its values are in their ranges.
+    /// Checks that it is one of the two kinds, and that its values are in their ranges.
     pub fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
-        // Any middle of a part does, but the eye itself.
+        // Any centre of a part is valid, except the eye itself.
         let [x, y, z] = self.eye.unwrap_or_default();
         self.matrices(sensor, &Point3::new(x + 1.0 + x.abs(), y, z))
             .map(|_| ())
     }
 
-    /// The matrices of the camera for a part with this middle.
+    /// The matrices of the camera for a part with this centre.
     pub fn matrices(&self, sensor: &Sensor, centre: &Point3<f64>) -> Result<Matrices, SetupError> {
         let strangers = match self.eye {
             Some(_) => [
@@ -98,7 +98,7 @@ impl Viewpoint {
     ) -> Result<Matrices, SetupError> {
         let target = self.target.map_or(*centre, Point3::from);
         let up = Vector3::from(self.up.unwrap_or([0.0, 0.0, 1.0]));
-        ViewCamera::perspective(eye, target, up, 1.0).map_err(told)?;
+        ViewCamera::perspective(eye, target, up, 1.0).map_err(setup_error)?;
         let z = (target - eye).normalize();
         let x = across(&z, &up);
         let r = Matrix3::from_rows(&[x.transpose(), z.cross(&x).transpose(), z.transpose()]);
@@ -117,7 +117,8 @@ impl Viewpoint {
     }
 }
 
-/// OpenCV's matrices: image = K (R x + t), in pixels, the centre of the first pixel at (0, 0), y down.
+/// OpenCV's matrices: image = K (R x + t), in pixels, the centre of the first pixel at (0, 0), y
+/// down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrices {
     /// K, the camera matrix.
@@ -138,11 +139,11 @@ impl Matrices {
             t,
             size: None,
         })
-        .map_err(told)
+        .map_err(setup_error)
     }
 }
 
-fn told(error: CameraError) -> SetupError {
+fn setup_error(error: CameraError) -> SetupError {
     match error {
         CameraError::Value(key, reason) => SetupError::value(format!("camera.{key}"), reason),
         other => SetupError::value("camera", other.to_string()),
@@ -152,7 +153,7 @@ fn told(error: CameraError) -> SetupError {
 /// The unit vector to the right in the image.
 fn across(z: &Vector3<f64>, up: &Vector3<f64>) -> Vector3<f64> {
     let x = z.cross(up);
-    // Along the line of sight, or as good as: another axis takes its place.
+    // If it is nearly along the line of sight, another axis replaces it.
     match x.norm() > up.norm() * f64::EPSILON.sqrt() {
         true => x.normalize(),
         false => {

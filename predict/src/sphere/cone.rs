@@ -1,4 +1,4 @@
-//! Cones of directions, and the caps that they cut out of the sphere.
+//! Cones of directions, and their caps of the sphere.
 
 use super::{SphereError, is_angle};
 use nalgebra::Vector3;
@@ -15,7 +15,7 @@ pub struct ViewCone {
     pub half_angle: f64,
 }
 
-/// A cone's part of the unit sphere.
+/// The cap of a cone on the unit sphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cap {
     axis: Vector3<f64>,
@@ -60,15 +60,15 @@ impl Cap {
         4.0 * PI * self.share
     }
 
-    /// Whether a unit vector is in it; the rounding of unit vectors is on the inner side.
+    /// Whether a unit vector is in it; rounding errors of unit vectors count as inside.
     pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
         // The chord from the axis has twice the sine of half the angle.
         (point - self.axis).norm_squared() <= 4.0 * self.share + 8.0 * f64::EPSILON
     }
 
-    /// Whether it may meet what lies within an angle, in radians, of a unit vector.
+    /// Whether it may intersect the cap of an angle, in radians, around a unit vector.
     pub(super) fn reaches(&self, point: &Vector3<f64>, angle: f64) -> bool {
-        // A little more than is there, for the rounding.
+        // Enlarged a little for rounding errors.
         self.axis.angle(point) <= self.half_angle + 1.01 * angle
     }
 
@@ -82,8 +82,8 @@ impl Cap {
     }
 }
 
-/// Two unit vectors perpendicular to a unit vector and to one another, right-handed with it; of z, x
-/// and y.
+/// Two unit vectors perpendicular to a unit vector and to one another, right-handed with it; of z,
+/// x and y.
 fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     // Duff et al., Journal of Computer Graphics Techniques 6, 2017.
     let sign = 1.0_f64.copysign(axis.z);

@@ -1,9 +1,9 @@
 //! The Fibonacci lattice.
 //!
-//! On a cap the spiral winds around its axis down to its border, so that the number of points is just
-//! what is wished, and each has the same area. Where there are several caps each has a spiral of its
-//! own, all of one density, without the points that lie in a larger cap; the density is raised until
-//! their number is reached, and what is then too many is left out, spread over all.
+//! On a cap the spiral winds around its axis down to its border, so that it has exactly the
+//! requested number of points, each with the same area. Several caps have a spiral each, all of one
+//! density, without the points that lie in a larger cap. The density is raised until their number
+//! is reached; surplus points are removed evenly.
 
 use super::cone::Cap;
 use super::{MAX_POINTS, SphereError, SphereSampling};
@@ -15,7 +15,7 @@ fn golden_angle() -> f64 {
     PI * (3.0 - 5.0_f64.sqrt())
 }
 
-/// So many points on a cap.
+/// A number of points on a cap.
 fn spiral(cap: &Cap, n: usize) -> impl Iterator<Item = Vector3<f64>> {
     let depth = 2.0 * cap.share;
     let turn = golden_angle();
@@ -26,7 +26,7 @@ fn spiral(cap: &Cap, n: usize) -> impl Iterator<Item = Vector3<f64>> {
     })
 }
 
-/// The points of all caps at so many points to the steradian.
+/// The points of all caps at a density per steradian.
 fn at_density(caps: &[Cap], density: f64) -> Result<Vec<Vector3<f64>>, SphereError> {
     let mut found = Vec::new();
     for (i, cap) in caps.iter().enumerate() {
@@ -41,7 +41,7 @@ fn at_density(caps: &[Cap], density: f64) -> Result<Vec<Vector3<f64>>, SphereErr
     Ok(found)
 }
 
-/// The points that are wished.
+/// The requested points.
 pub(super) fn points(
     sampling: SphereSampling,
     caps: &[Cap],
@@ -54,18 +54,18 @@ pub(super) fn points(
         SphereSampling::Count(count) => counted(caps, largest, count),
         SphereSampling::Angle(degrees) => {
             let density = degrees.to_radians().powi(-2);
-            // A cap smaller than what a point has for its own has one all the same.
+            // A cap smaller than the area of one point still has one.
             let least = 1.0 / largest.area();
             at_density(caps, density.max(least))
         }
     }
 }
 
-/// So many points on several caps.
+/// A number of points on several caps.
 fn counted(caps: &[Cap], largest: &Cap, count: usize) -> Result<Vec<Vector3<f64>>, SphereError> {
     let wished = count as f64;
     let area: f64 = caps.iter().map(Cap::area).sum();
-    // The caps have between them the density of no overlap, and that of the largest cap alone.
+    // The density is between that of caps without overlap and that of the largest cap alone.
     let (mut low, mut high) = (wished / area, wished / largest.area());
     let mut best = at_density(caps, high)?;
     for _ in 0..40 {
@@ -82,7 +82,7 @@ fn counted(caps: &[Cap], largest: &Cap, count: usize) -> Result<Vec<Vector3<f64>
         }
     }
     let n = best.len();
-    // Of n points those are kept at which the share of the count goes on by one.
+    // Of n points those are kept at which the proportional count increases by one.
     let kept = |i: &usize| (i + 1) * count / n > i * count / n;
     Ok((0..n).filter(kept).map(|i| best[i]).collect())
 }

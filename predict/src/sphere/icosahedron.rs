@@ -4,7 +4,7 @@ use super::cone::Cap;
 use super::{MAX_POINTS, SphereError, SphereSampling};
 use nalgebra::Vector3;
 
-/// The largest frequency: 10f² + 2 points are just within the most that are made.
+/// The largest frequency: its 10f² + 2 points are just within the greatest number of points.
 const MOST: usize = 647;
 const _: () = assert!(10 * MOST * MOST + 2 <= MAX_POINTS);
 
@@ -34,8 +34,8 @@ fn joined(a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
     a.dot(b) > 0.0
 }
 
-/// All points of a frequency, each made once: the vertices, the inner points of the edges, and those
-/// of the faces; of edges and faces those alone that caps may reach.
+/// All points of a frequency, each once: the vertices, the inner points of the edges, and those of
+/// the faces; only of edges and faces that caps may reach.
 fn grid(f: usize, caps: &[Cap]) -> impl Iterator<Item = Vector3<f64>> {
     let corners = vertices();
     let mixed = move |on: [usize; 3], by: [usize; 3]| {
@@ -68,8 +68,8 @@ fn grid(f: usize, caps: &[Cap]) -> impl Iterator<Item = Vector3<f64>> {
 
 /// The angle in radians of the longest edge of a frequency.
 ///
-/// Lifting stretches most where a face is nearest to the centre, in its middle: the edges around there
-/// are asked.
+/// Lifting stretches most where a face is nearest to the centre, in its middle, so the edges around
+/// there are evaluated.
 fn longest(f: usize) -> f64 {
     let corners = vertices();
     // These three are joined to one another.
@@ -92,11 +92,13 @@ fn longest(f: usize) -> f64 {
     most
 }
 
-/// Whether a frequency may have so many points in the caps, by a bound that no frequency exceeds.
+/// Whether a frequency may have a number of points in the caps, by a bound that no frequency
+/// exceeds.
 ///
-/// The edges are no shorter than an edge of the icosahedron (1.0514) over f, lifted from the planes of
-/// its faces at 0.7946 from the centre, where that stretches least: by 0.7946, towards a vertex. So
-/// caps of half that around the points do not overlap, and lie in the wished caps widened by as much.
+/// The edges are no shorter than an edge of the icosahedron (1.0514) over f, lifted from the planes
+/// of its faces at 0.7946 from the centre, where that stretches least: by 0.7946, towards a vertex.
+/// So caps of half that size around the points do not overlap, and lie in the requested caps
+/// widened by as much.
 fn may_hold(f: usize, caps: &[Cap], count: usize) -> bool {
     let half = 0.5 * 0.83 / f as f64;
     let share = |angle: f64| (0.5 * angle.min(std::f64::consts::PI)).sin().powi(2);
@@ -112,7 +114,7 @@ fn within(f: usize, caps: &[Cap]) -> impl Iterator<Item = Vector3<f64>> {
     grid(f, caps).filter(move |p| caps.iter().any(|cap| cap.contains(p)))
 }
 
-/// The points of the smallest frequency that has as many, or as small an angle, as is wished.
+/// The points of the smallest frequency that has the requested number or angle.
 pub(super) fn points(
     sampling: SphereSampling,
     caps: &[Cap],

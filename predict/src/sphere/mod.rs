@@ -1,5 +1,5 @@
 //! Points on the illumination and viewing spheres (PREMIO, section 3.2.1), spread evenly over the
-//! sphere or over cones of directions, and always the same ones for the same wishes.
+//! sphere or over cones of directions. Equal requests give equal points.
 
 mod cone;
 mod fibonacci;
@@ -11,48 +11,49 @@ use premio_text::number;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The most points that are made: far more views than any model is made of.
+/// The greatest number of points: far more views than any model has.
 pub const MAX_POINTS: usize = 1 << 22;
 
-/// How points are laid on the sphere.
+/// The lattice of points on the sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lattice {
     /// A spiral, each point turned on from the last by the golden angle (Vogel, 1979; González,
-    /// Mathematical Geosciences 42, 2010): any number of points, each with the same area of its own.
+    /// Mathematical Geosciences 42, 2010): any number of points, each with the same area of its
+    /// own.
     #[default]
     Fibonacci,
-    /// The vertices of an icosahedron whose faces are divided evenly and lifted to the sphere, 10f² + 2
-    /// for the frequency f: six neighbours to a point, and areas that differ by up to a half.
+    /// The vertices of an icosahedron whose faces are divided evenly and lifted to the sphere, 10f²
+    /// + 2 for the frequency f: six neighbours to a point, and areas that differ by up to a half.
     Icosahedral,
 }
 
-/// How many points are wished.
+/// The requested number or spacing of points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SphereSampling {
-    /// So many points within the cones: just so many on a Fibonacci lattice, at least so many on an
-    /// icosahedral one.
+    /// A number of points within the cones: exactly this many on a Fibonacci lattice, at least this
+    /// many on an icosahedral one.
     Count(usize),
-    /// So many degrees between neighbours. On a Fibonacci lattice each point has an area of this
-    /// angle squared, and the nearest neighbour is at about 0.87 of it; on an icosahedral one no edge
-    /// is longer.
+    /// The angle between neighbours in degrees. On a Fibonacci lattice each point has an area of
+    /// this angle squared, and the nearest neighbour is at about 0.87 of it; on an icosahedral one
+    /// no edge is longer.
     Angle(f64),
 }
 
 /// Why there are no points.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum SphereError {
-    /// No points are wished.
+    /// The requested number of points is zero.
     #[error("the number of points must be at least 1")]
     NoCount,
-    /// The angle between neighbours is none.
+    /// The angle between neighbours is invalid.
     #[error("the angle between neighbours is {}°, and must be more than 0° and at most 180°", number(*.0))]
     Angle(f64),
     /// A cone has no direction.
     #[error("the axis of cone {0} has no direction")]
     Axis(usize),
-    /// A cone has no half angle.
+    /// The half angle of a cone is invalid.
     #[error("the half angle of cone {cone} is {}°, and must be more than 0° and at most 180°", number(*angle))]
     HalfAngle {
         /// Which cone, counted from 0.
@@ -60,7 +61,7 @@ pub enum SphereError {
         /// Its half angle in degrees.
         angle: f64,
     },
-    /// The points are more than the program makes.
+    /// The request needs more points than the limit.
     #[error("more than {MAX_POINTS} points on the sphere would be needed")]
     TooMany,
     /// The lattice has no point within the cones.
@@ -68,8 +69,8 @@ pub enum SphereError {
     Empty,
 }
 
-/// The points of a lattice that lie in any of the cones, or on the whole sphere if there is no cone:
-/// unit vectors, in an order that depends on nothing else.
+/// The points of a lattice that lie in any of the cones, or on the whole sphere if there is no
+/// cone: unit vectors, in an order that depends only on the request.
 pub fn points(
     lattice: Lattice,
     sampling: SphereSampling,

@@ -37,8 +37,8 @@ fn fibonacci_lattices_have_the_count_and_are_even() {
         assert!(all.iter().all(|p| (p.norm() - 1.0).abs() < 1e-15));
     }
     let all = fibonacci(1000, &[]);
-    // The octants of a set turned away from the axes: far more even than by chance, where χ² of 7
-    // degrees is 7.
+    // The octants of a rotated frame: the points are far more even than by chance, where χ² of 7
+    // degrees of freedom is 7.
     let axes = [
         Vector3::new(1.0, 2.0, 2.0),
         Vector3::new(2.0, 1.0, -2.0),
@@ -56,7 +56,7 @@ fn fibonacci_lattices_have_the_count_and_are_even() {
         .map(|&c| (c as f64 - 125.0).powi(2) / 125.0)
         .sum();
     assert!(chi2 < 1.0, "{counts:?}");
-    // A point's area is 4π/n; hexagons of it would be 1.07 of its root apart.
+    // A point's area is 4π/n; the centres of hexagons of this area are 1.07 times its root apart.
     let side = (4.0 * PI / 1000.0).sqrt();
     for spacing in nearest(&all) {
         assert!(
@@ -163,7 +163,7 @@ fn icosahedral_lattices_keep_to_cones() {
 }
 
 #[test]
-fn wishes_that_cannot_be_are_told() {
+fn invalid_requests_are_reported() {
     let ask = |lattice, sampling, cones: &[ViewCone]| points(lattice, sampling, cones).unwrap_err();
     for lattice in [Lattice::Fibonacci, Lattice::Icosahedral] {
         assert_eq!(

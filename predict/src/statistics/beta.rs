@@ -1,4 +1,4 @@
-//! A proportion, and how well it is known.
+//! A proportion with its credible interval.
 
 use super::{StatisticsError, whole};
 use serde::{Deserialize, Serialize};
@@ -6,10 +6,10 @@ use statrs::function::beta::checked_beta_reg;
 use statrs::function::erf::erfc;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-/// A count of successes in trials that are alike, such as the views in which a feature was detected.
+/// A count of successes in identical trials, such as the views in which a feature was detected.
 ///
-/// What is known of the proportion is Jeffreys' posterior (Jeffreys, Theory of Probability; Brown, Cai
-/// and DasGupta, Statistical Science 16, 2001): of s successes in n trials, Beta(s + ½, n − s + ½).
+/// The posterior of the proportion is Jeffreys' (Jeffreys, Theory of Probability; Brown, Cai and
+/// DasGupta, Statistical Science 16, 2001): of s successes in n trials, Beta(s + ½, n − s + ½).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Written", into = "Written")]
 pub struct Proportion {
@@ -26,7 +26,7 @@ struct Written {
     trials: u64,
 }
 
-/// The bounds that a proportion is within.
+/// The bounds of a proportion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CredibleInterval {
@@ -37,10 +37,13 @@ pub struct CredibleInterval {
 }
 
 impl Proportion {
-    /// The level at which intervals are told, unless another is asked.
+    /// The default level of intervals.
     pub const LEVEL: f64 = 0.95;
 
-    /// So many successes in so many trials; they are no more than the trials.
+    /// A count of successes and trials.
+    ///
+    /// # Errors
+    /// There are more successes than trials.
     pub fn new(successes: u64, trials: u64) -> Result<Self, StatisticsError> {
         if successes > trials {
             return Err(StatisticsError::Successes { successes, trials });
@@ -58,7 +61,7 @@ impl Proportion {
         self.trials
     }
 
-    /// Counts one trial more.
+    /// Counts one more trial.
     pub fn record(&mut self, success: bool) {
         let trial = Self {
             successes: success.into(),
@@ -85,9 +88,9 @@ impl Proportion {
         a / (a + b)
     }
 
-    /// The equal-tailed credible interval: the proportion is in it with the probability `level`, and
-    /// as likely below as above, to 2e-7 of the probability up to 10^8 trials. All
-    /// of 0 to 1 at a level of 1 or what is none.
+    /// The equal-tailed credible interval: the proportion is in it with the probability `level`,
+    /// and as likely below as above, to 2e-7 of the probability up to 10^8 trials. It is 0 to 1 at
+    /// a level of 1 or NaN.
     pub fn interval(&self, level: f64) -> CredibleInterval {
         if level.is_nan() || level >= 1.0 {
             return CredibleInterval {
@@ -121,10 +124,10 @@ impl From<Proportion> for Written {
     }
 }
 
-/// The proportion x up to which something holds of x and 1 − x.
+/// The greatest proportion x for which a predicate of x and 1 − x holds.
 ///
-/// By halves in the angle whose sine squared x is: in it posteriors are nearly alike everywhere, and
-/// what is next to 0 or 1 keeps its digits.
+/// It is found by bisection in the angle whose squared sine is x: in this angle posteriors have
+/// nearly the same width everywhere, and values next to 0 or 1 keep their digits.
 fn proportion(holds: impl Fn(f64, f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     loop {
@@ -141,13 +144,14 @@ fn proportion(holds: impl Fn(f64, f64) -> bool) -> f64 {
     }
 }
 
-/// The trials to which the continued fraction of the beta function is carried far enough.
+/// The number of trials up to which the continued fraction of the beta function is accurate enough.
 const FEW: f64 = 10_000.0;
 
 /// The probability that Beta(a, b) is below x, where y is 1 − x.
 fn below(a: f64, b: f64, x: f64, y: f64) -> f64 {
     let all = a + b;
-    // Where one of them is small the fraction needs few terms, but its factors lose digits in the end.
+    // Where one of them is small, the fraction needs few terms, but its factors lose digits for
+    // large numbers.
     if all <= FEW || a.min(b) < 100.0 && all <= FEW * FEW {
         return checked_beta_reg(a, b, x).unwrap_or(x);
     }
@@ -155,8 +159,8 @@ fn below(a: f64, b: f64, x: f64, y: f64) -> f64 {
 }
 
 /// The probability that Beta(a, b) is below x, where y is 1 − x, by the approximation of Peizer and
-/// Pratt (Journal of the American Statistical Association 63, 1968): to 2e-7 for a and b of at least 100
-/// and 10,000 together.
+/// Pratt (Journal of the American Statistical Association 63, 1968): to 2e-7 for a and b of at
+/// least 100 and 10,000 together.
 fn of_many(a: f64, b: f64, x: f64, y: f64) -> f64 {
     // The chance of less than b successes in n trials that each succeed by the chance y.
     let n = a + b - 1.0;
@@ -166,7 +170,7 @@ fn of_many(a: f64, b: f64, x: f64, y: f64) -> f64 {
     let skew = 1.0 + x * bent(s / (n * y)) + y * bent(t / (n * x));
     let z = off * (skew / ((n + 1.0 / 6.0) * x * y)).sqrt();
     if z.is_nan() {
-        // At the very end of the range.
+        // At the end of the range.
         return if x < y { 0.0 } else { 1.0 };
     }
     0.5 * erfc(-z / SQRT_2)
@@ -216,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn many_trials_are_told_as_few_are() {
+    fn the_approximation_for_many_trials_agrees() {
         let mut most = 0.0_f64;
         for (a, b) in [(100.5, 9899.5), (3000.5, 6999.5), (5000.0, 5000.0)] {
             for z in [-6.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 6.0] {

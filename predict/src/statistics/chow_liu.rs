@@ -1,8 +1,9 @@
-//! Which features are detected together: the tree that loses least of their joint distribution.
+//! The co-detection of features: the dependence tree that loses least of their joint distribution.
 
 use super::Pairs;
 
-/// What is added to each count, so that what never occurred is not taken for impossible.
+/// The pseudo-count added to each count, so that states that never occurred are not taken for
+/// impossible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Smoothing {
     /// One half: Jeffreys' prior of a distribution over states.
@@ -30,30 +31,31 @@ pub struct DependenceNode<const K: usize> {
     pub information: f64,
     /// The probability of each of its states.
     pub marginal: [f64; K],
-    /// The probability of each of its states where the parent is in a state: by the parent's, then by
-    /// its own. Of the root every row is the marginal.
+    /// The probability of each of its states where the parent is in a state: by the parent's, then
+    /// by its own. Of the root every row is the marginal.
     pub table: [[f64; K]; K],
 }
 
 /// The spanning tree of most mutual information (Chow and Liu, IEEE Transactions on Information
-/// Theory 14, 1968): of all distributions in which each feature depends on one other, the one nearest
-/// to the counts.
+/// Theory 14, 1968): of all distributions in which each feature depends on one other, the one
+/// nearest to the counts.
 ///
-/// It is computed from the counts, and not merged: those are. The root is the feature that has the
-/// most information about all others together. Of what is as good to 2^-40 nats, the feature of the
-/// lower index is taken, as the root, as the next to be joined, and as the parent.
+/// It is computed from counts; only counts can be merged. The root is the feature with the most
+/// information about all others together. Among alternatives within 2^-40 nats, the feature of the
+/// lower index is used: as the root, as the next to be joined, and as the parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DependenceTree<const K: usize> {
     nodes: Vec<DependenceNode<K>>,
     order: Vec<usize>,
 }
 
-/// An information as a whole number: equal counts give it, whatever the order they are summed in.
+/// An information as an integer: equal counts give equal integers, in whatever order they are
+/// summed.
 fn rank(information: f64) -> u64 {
     (information * (1_u64 << 40) as f64).round() as u64
 }
 
-/// The probabilities of states of so many counts.
+/// The probabilities of states from counts.
 fn smoothed<const K: usize>(counts: [u32; K], smoothing: Smoothing) -> [f64; K] {
     let added = smoothing.added();
     let all: f64 = counts.iter().map(|&c| f64::from(c) + added).sum();
@@ -132,7 +134,7 @@ fn spanning<const K: usize>(pairs: &Pairs<K>) -> (Vec<Option<usize>>, Vec<usize>
     let features = pairs.features();
     let mut parents = vec![None; features];
     let mut order = Vec::with_capacity(features);
-    // To what in the tree each feature outside is bound most.
+    // By feature outside the tree: its greatest information with a feature in the tree.
     let mut bound = vec![(0_u64, None); features];
     let mut outside: Vec<usize> = (0..features).collect();
     let mut next = root(pairs);

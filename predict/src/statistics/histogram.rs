@@ -4,8 +4,8 @@ use super::StatisticsError;
 use super::whole::Whole;
 use serde::{Deserialize, Serialize};
 
-/// Counts of the numbers 0 to N − 2, and of all from N − 1 on: such as in how many fragments a feature
-/// was found.
+/// Counts of the numbers 0 to N − 2, and of all from N − 1 on: such as in how many fragments a
+/// feature was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Whole>", into = "Vec<Whole>")]
 pub struct Histogram<const N: usize> {

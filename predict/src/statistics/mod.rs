@@ -1,7 +1,7 @@
-//! What many predictions are summed up in.
+//! The statistics of many predictions.
 //!
-//! Each sum can be merged with another of its kind. It is kept in whole numbers, so that the result is
-//! the same bit for bit, however the samples were split and in whatever order they came.
+//! Each sum can be merged with another of its kind. It is kept in whole numbers, so that the result
+//! is the same bit for bit, however the samples were split and in whatever order they came.
 
 mod beta;
 mod chow_liu;
@@ -24,12 +24,12 @@ pub enum StatisticsError {
     /// A value is no number, or more than 2^20 from zero.
     #[error("value {0} of a sample is no number between -2^20 and 2^20")]
     Unbounded(usize),
-    /// Something has not as many parts as it must.
+    /// A value has the wrong number of parts.
     #[error("{found} values where {expected} are counted")]
     Length {
-        /// So many parts there are.
+        /// The number of parts.
         found: usize,
-        /// So many there must be.
+        /// The required number.
         expected: usize,
     },
     /// An observation has a state that is not counted.

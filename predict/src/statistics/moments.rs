@@ -10,14 +10,16 @@ const BITS: u32 = 40;
 /// The bits of the largest value: pixels and angles are far below.
 const RANGE: u32 = 20;
 
-/// The number, sum and products of samples of N values, from which come their mean and covariance.
+/// The number, sum and products of samples of N values, from which their mean and covariance are
+/// computed.
 ///
-/// A value is rounded to 2^-40, a product of two such to 2^-40 once more, and these are summed as whole
-/// numbers of 128 bits, whose addition is associative: the result does not depend on the order of the
-/// samples, nor on how they were split. Values are from −2^20 to 2^20, so that the sums hold 2^47
-/// samples (should more come, they wrap, still in no order). Of the mean the error is 2^-41 and
-/// of the covariance 2^-41 + (σx + σy) 2^-41, next to the rounding of f64 values: the mean is taken off
-/// in whole numbers, so that nothing cancels. Values much below 2^-20 are to be scaled beforehand.
+/// A value is rounded to 2^-40, and a product of two such again to 2^-40. These are summed as
+/// integers of 128 bits, whose addition is associative: the result does not depend on the order of
+/// the samples, nor on how they were split. Values are from −2^20 to 2^20, so that the sums hold
+/// 2^47 samples (more samples wrap, independently of their order). The error of the mean is 2^-41
+/// and that of the covariance 2^-41 + (σx + σy) 2^-41, plus the rounding of f64 values: the mean is
+/// subtracted in integers, so that nothing cancels. Values much below 2^-20 must be scaled
+/// beforehand.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Written", into = "Written")]
 pub struct Moments<const N: usize> {
@@ -64,7 +66,7 @@ impl<const N: usize> Default for Moments<N> {
 }
 
 impl<const N: usize> Moments<N> {
-    /// Counts a sample, if all its values are in the range; else nothing of it.
+    /// Counts a sample, if all its values are in the range; otherwise none of them.
     pub fn record(&mut self, sample: &[f64; N]) -> Result<(), StatisticsError> {
         let mut values = [0; N];
         for (i, (value, sample)) in values.iter_mut().zip(sample).enumerate() {
@@ -103,14 +105,14 @@ impl<const N: usize> Moments<N> {
         (self.count > 0).then(|| SVector::from_fn(|i, _| mean(i)))
     }
 
-    /// The covariance of the samples, by their number less one, with `floor` added to its diagonal: the
-    /// variance that each value has at the least, in the unit of its square. The floor alone where
+    /// The covariance of the samples, divided by their number less one, with `floor` added to its
+    /// diagonal: the least variance of each value, in the square of its unit. The floor alone where
     /// there are fewer than two samples.
     pub fn covariance(&self, floor: &[f64; N]) -> SMatrix<f64, N, N> {
         SMatrix::from_fn(|i, j| {
             let spread = self.spread(i.min(j), i.max(j));
             if i == j {
-                // What was rounded may leave less than nothing.
+                // Rounding may leave a negative number.
                 spread.max(0.0) + floor[i]
             } else {
                 spread
@@ -124,7 +126,7 @@ impl<const N: usize> Moments<N> {
         self.sums[i].div_euclid(count) >> (BITS - RANGE)
     }
 
-    /// The mean of what the samples are beyond the pivot.
+    /// The mean of the samples minus the pivot.
     fn beyond(&self, i: usize) -> f64 {
         let pivots = (self.pivot(i) << RANGE).wrapping_mul(self.count.into());
         double(self.sums[i].wrapping_sub(pivots), BITS) / self.count as f64
@@ -293,7 +295,7 @@ mod tests {
         let expected = most * most * (2001.0 - 1.0 / 2001.0) / 2000.0;
         assert!((covariance[(0, 0)] / expected - 1.0).abs() < 1e-12);
         assert!((covariance[(0, 1)] / expected + 1.0).abs() < 1e-12);
-        // What is read may be anything.
+        // Read values may be arbitrary.
         let text = format!(
             r#"{{"count":3,"sums":["{0}"],"products":["{0}"]}}"#,
             i128::MIN

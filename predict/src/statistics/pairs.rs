@@ -1,13 +1,13 @@
-//! How often features were in which states together.
+//! Joint counts of the states of features.
 
 use super::StatisticsError;
 use serde::{Deserialize, Serialize};
 
 /// Counts of the states of F features, alone and by pairs, over many observations.
 ///
-/// A state is a number below K: for K = 2 missed and seen, for K = 3 also not visible, or as the caller
-/// has it. A pair of features has K × K counts of 32 bits; 4 K² F²/2 bytes in all. At 2^32 − 1 a count
-/// stays.
+/// A state is a number below K: for K = 2 missed and seen, for K = 3 also not visible, or as the
+/// caller defines. A pair of features has K × K counts of 32 bits; 4 K² F²/2 bytes in all. A count
+/// saturates at 2^32 − 1.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Written", into = "Written")]
 pub struct Pairs<const K: usize> {
@@ -29,7 +29,7 @@ struct Written {
     double: Vec<u32>,
 }
 
-/// The number of pairs of so many features.
+/// The number of pairs of a number of features.
 fn pairs(features: usize) -> usize {
     features.saturating_mul(features.saturating_sub(1)) / 2
 }
@@ -41,7 +41,7 @@ fn add(to: &mut [u32], from: &[u32]) {
 }
 
 impl<const K: usize> Pairs<K> {
-    /// No observation yet of so many features.
+    /// Empty counts of a number of features.
     pub fn new(features: usize) -> Self {
         Self {
             features,
@@ -61,8 +61,8 @@ impl<const K: usize> Pairs<K> {
         self.observations
     }
 
-    /// Counts an observation: the state of each feature. Nothing is counted of one that is not of these
-    /// features and states.
+    /// Counts an observation: the state of each feature. An observation with other features or
+    /// states is not counted.
     pub fn observe(&mut self, states: &[u8]) -> Result<(), StatisticsError> {
         self.alike(states.len())?;
         let wrong = |&(_, &state): &(usize, &u8)| usize::from(state) >= K;
@@ -100,7 +100,7 @@ impl<const K: usize> Pairs<K> {
         Ok(())
     }
 
-    /// How often a feature was in each state; never, if there is no such feature.
+    /// The counts of a feature's states; zero if there is no such feature.
     pub fn counts(&self, feature: usize) -> [u32; K] {
         let mut counts = [0; K];
         if let Some(row) = self.single.chunks_exact(K.max(1)).nth(feature) {
@@ -109,8 +109,8 @@ impl<const K: usize> Pairs<K> {
         counts
     }
 
-    /// How often two features were in which states together: by the state of the first, then of the
-    /// second. Of a feature with itself only the diagonal.
+    /// The joint counts of two features' states: by the state of the first, then of the second. Of
+    /// a feature with itself only the diagonal.
     pub fn table(&self, first: usize, second: usize) -> [[u32; K]; K] {
         let mut table = [[0; K]; K];
         if first == second {
@@ -138,7 +138,7 @@ impl<const K: usize> Pairs<K> {
 
     /// The mutual information of two features' states by the counts as they are, in nats.
     pub fn information(&self, first: usize, second: usize) -> f64 {
-        // The sums are those of the lower feature first, so that the rounding is of the pair.
+        // The sums start with the lower feature, so that rounding depends only on the pair.
         let (i, j) = (first.min(second), first.max(second));
         let (of_i, of_j) = (self.counts(i), self.counts(j));
         let n = f64::from(self.observations);

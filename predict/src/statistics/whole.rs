@@ -1,13 +1,13 @@
-//! Whole numbers in JSON: as a string where a reader that has f64 values alone would round them.
+//! Integers in JSON: written as a string where a reader with f64 values would round them.
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// The largest number to which all whole numbers are f64 values: 2^53.
+/// The largest number up to which all integers are exact in f64: 2^53.
 const EXACT: u128 = 1 << 53;
 
-/// A whole number that is written without loss.
+/// An integer that is written without loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Whole(pub(super) i128);
 

@@ -1,4 +1,4 @@
-//! Predicting the setups of shards, and summing them up.
+//! Prediction of the setups of shards, and their summary.
 
 use super::shard::{Shard, ShardHead, ShardRun, ShardWriter};
 use crate::progress::{Progress, StepCounter};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
 
-/// How many setups are predicted before they are handed on.
+/// The number of setups in a batch.
 const BATCH: usize = 64;
 
 /// Predicts setups of a part, on the threads of the pool that it is called in.
@@ -50,11 +50,11 @@ pub struct SetupObserver<'s> {
 }
 
 impl SetupObserver<'_> {
-    /// Predicts a range of setups and hands them on in order, some at a time. A step of the progress is
-    /// a setup.
+    /// Predicts a range of setups and passes them on in order, in batches. A step of the progress
+    /// is a setup.
     ///
     /// # Errors
-    /// The work was cancelled, or what they are handed to fails.
+    /// The work was cancelled, or the receiver of the observations fails.
     ///
     /// # Examples
     ///
@@ -96,7 +96,7 @@ impl SetupObserver<'_> {
         Ok(())
     }
 
-    /// Predicts the setups of a shard into its file; nothing is left of it if the work is cancelled.
+    /// Predicts the setups of a shard into its file; no file remains if the work is cancelled.
     ///
     /// # Errors
     /// The work was cancelled, or the file cannot be written.
@@ -145,7 +145,7 @@ impl SetupObserver<'_> {
         counter: &StepCounter<'_, '_>,
     ) -> Observation {
         if progress.check().is_err() {
-            // It will not be handed on.
+            // It is not passed on.
             return Observation::unseen(self.setups, index, String::new());
         }
         let seen = self.predict(index, memory);
@@ -167,7 +167,7 @@ impl SetupObserver<'_> {
 /// observation; each is read twice.
 ///
 /// # Errors
-/// A shard cannot be read, or is not as it was written, or the work was cancelled.
+/// A shard cannot be read, or was changed after it was written, or the work was cancelled.
 ///
 /// # Examples
 ///

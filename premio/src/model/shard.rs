@@ -49,18 +49,18 @@ pub struct ShardHead {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are distinguished from others by.
+    /// The digest of part and setups.
     pub digest: String,
     /// The setups, as they were written.
     pub setups: String,
-    /// Which shard, from 1, and of how many.
+    /// The index of the shard, from 1, and the number of shards.
     pub shard: [usize; 2],
     /// The setups of all shards.
     pub count: usize,
 }
 
 impl ShardHead {
-    /// The head of a shard: which, from 1, and of how many.
+    /// The head of a shard, from its index, from 1, and the number of shards.
     ///
     /// # Examples
     ///
@@ -85,7 +85,7 @@ impl ShardHead {
         }
     }
 
-    /// Whether it is of the same run as another shard.
+    /// Whether it belongs to the same run as another shard.
     ///
     /// # Examples
     ///
@@ -128,7 +128,7 @@ impl ShardHead {
     }
 }
 
-/// What all shards of a run share.
+/// The common data of all shards of a run.
 ///
 /// # Examples
 ///
@@ -147,7 +147,7 @@ pub struct ShardRun {
     pub part: String,
     /// The part's description.
     pub description: DescriptionRecord,
-    /// What part and setups are distinguished from others by.
+    /// The digest of part and setups.
     pub digest: String,
     /// The setups, as they were written.
     pub text: String,
@@ -159,7 +159,7 @@ impl ShardRun {
     /// A run of a solid in the setups of a TOML text.
     ///
     /// # Errors
-    /// The text is none of setups, or no description holds the solid's numbers exactly.
+    /// The text is not valid setups, or no description can express the solid's numbers exactly.
     ///
     /// # Examples
     ///
@@ -186,7 +186,7 @@ impl ShardRun {
     }
 }
 
-/// Fowler, Noll and Vo's hash of some bytes: it tells files apart.
+/// The hash of some bytes by Fowler, Noll and Vo, which distinguishes files.
 ///
 /// # Examples
 ///
@@ -207,7 +207,7 @@ pub fn digest<'b>(all: impl IntoIterator<Item = &'b [u8]>) -> String {
     format!("{hash:016x}")
 }
 
-/// A shard in a file, which is as it was written.
+/// A verified shard in a file.
 ///
 /// # Examples
 ///
@@ -228,7 +228,7 @@ impl Shard {
     /// Opens a shard.
     ///
     /// # Errors
-    /// It is none, it is of another schema, it is not as it was written, or it has more bytes than
+    /// It is no shard, has another schema, was changed after it was written, or has more bytes than
     /// `max_bytes`.
     ///
     /// # Examples
@@ -279,7 +279,7 @@ impl Shard {
             max_bytes,
         };
         if !is_whole || !last.ends_with('\n') {
-            // Perhaps a line says what is wrong.
+            // A line may contain the error.
             shard.each(&SourceLimits::NONE, |_| ())?;
             end?;
             let said =
@@ -314,10 +314,10 @@ impl Shard {
         &self.path
     }
 
-    /// Hands on every observation of it, in order.
+    /// Passes on every observation of it, in order.
     ///
     /// # Errors
-    /// One is missing, is not one, or is of what there is not; or there are more.
+    /// An observation is missing, invalid or inconsistent; or there are too many.
     ///
     /// # Examples
     ///
@@ -367,7 +367,7 @@ impl Shard {
 /// The language of a description in a model.
 ///
 /// # Errors
-/// There is none of this name.
+/// There is no language of this name.
 ///
 /// # Examples
 ///
@@ -395,7 +395,7 @@ fn observation(
     setup: usize,
     limits: &SourceLimits,
 ) -> Result<Observation, ShardError> {
-    // What is right needs no places.
+    // Positions are only needed for errors.
     let observation = match serde_json::from_str::<Observation>(line) {
         Ok(observation) => observation,
         Err(_) => lines.parsed(line, |line| Document::from_json(line)?.read())?,
@@ -411,7 +411,7 @@ fn observation(
     }
 }
 
-/// A value of a line that does not fit to the rest.
+/// The error of an inconsistent value of a line.
 fn inconsistent(line: &str, error: &Inconsistency) -> TextError {
     let document = Document::from_json(line);
     let span = document.ok().and_then(|document| document.span(&error.key));

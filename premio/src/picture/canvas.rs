@@ -24,7 +24,7 @@ impl Canvas {
         &mut self.pixels
     }
 
-    /// Sets a pixel, if it is in the first rows of so many.
+    /// Sets a pixel, if it is in the first `rows` rows.
     pub fn put(&mut self, [x, y]: [i32; 2], height: usize, colour: [u8; 3]) {
         let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else {
             return;
@@ -34,7 +34,7 @@ impl Canvas {
         }
     }
 
-    /// Writes letters of eight by eight pixels, as far as they are in the first rows of so many.
+    /// Writes letters of eight by eight pixels, clipped to the first `rows` rows.
     pub fn write(&mut self, [left, top]: [i32; 2], height: usize, words: &str, colour: [u8; 3]) {
         for (k, letter) in words.chars().enumerate() {
             let glyph = BASIC_LEGACY

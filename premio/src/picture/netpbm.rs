@@ -1,9 +1,10 @@
-//! Netpbm (PBM, PGM, PPM, PAM): every sample is there, and none is above the header's MAXVAL.
+//! Netpbm (PBM, PGM, PPM, PAM): checks that every sample exists and none is above the header's
+//! MAXVAL.
 
 use super::raster::{Channels, Raster, Samples};
 use std::fmt::Write;
 
-/// Why a picture is not read.
+/// Why a picture cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NetpbmError {
     /// The samples or the header end too early.
@@ -21,17 +22,17 @@ pub enum NetpbmError {
         /// The header's MAXVAL.
         white: u32,
     },
-    /// Something else is not as the format has it.
+    /// Another violation of the format.
     #[error("found {what} at byte {at}: the picture is damaged")]
     Malformed {
-        /// What it is.
+        /// The violation.
         what: &'static str,
         /// The byte in the file.
         at: usize,
     },
 }
 
-/// How samples are written.
+/// The encoding of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Encoding {
     /// Digits, 1 for black.
@@ -44,7 +45,7 @@ enum Encoding {
     Binary,
 }
 
-/// What the header says.
+/// The content of the header.
 #[derive(Clone, Debug)]
 pub struct Header {
     /// Width and height.
@@ -66,7 +67,7 @@ fn is_space(byte: u8) -> bool {
     matches!(byte, b'\t' | b'\n' | 0x0b | 0x0c | b'\r' | b' ')
 }
 
-/// Reads from the bytes of a file.
+/// A reader of the bytes of a file.
 struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -84,7 +85,8 @@ impl<'a> Cursor<'a> {
         byte
     }
 
-    /// The next number, and the white space after it; a comment reaches to the end of its line.
+    /// Reads the next number and the white space after it; a comment extends to the end of its
+    /// line.
     fn number(&mut self, has_comments: bool) -> Result<u32, NetpbmError> {
         let mut value = None;
         let mut is_comment = false;
@@ -122,7 +124,7 @@ impl Header {
     /// Reads the header.
     ///
     /// # Errors
-    /// The header is none, or of a kind that is not known.
+    /// The header is invalid, or of an unknown kind.
     pub fn read(bytes: &[u8]) -> Result<Self, NetpbmError> {
         let mut cursor = Cursor { bytes, at: 2 };
         let (channels, encoding) = match bytes.get(1) {
@@ -283,7 +285,7 @@ impl Header {
         })
     }
 
-    /// The sample of a place in the order of the file.
+    /// The sample at an index in the order of the file.
     fn sample(&self, value: u32, i: usize) -> Result<u16, NetpbmError> {
         let (pixel, width) = (i / self.channels.count(), self.size[0].max(1) as usize);
         u16::try_from(value)

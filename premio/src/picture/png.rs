@@ -1,4 +1,4 @@
-//! PNG: every checksum is compared, and every index into a palette.
+//! PNG: checks every checksum, and every index into a palette.
 
 use super::raster::{Channels, Raster, Samples};
 use ::png::{
@@ -8,13 +8,13 @@ use ::png::{
 use premio_text::escape::quote;
 use std::io::Cursor;
 
-/// Why a PNG is not read.
+/// Why a PNG cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum PngError {
     /// The file ends before the last chunk does.
     #[error("found a part of a picture: the file ends before it")]
     Truncated,
-    /// A chunk is not as it was written.
+    /// The checksum of a chunk is wrong.
     #[error(
         "found the checksum {stored:08x} of the chunk {kind} at byte {at}, computed {computed:08x}: \
          the picture is damaged"
@@ -22,7 +22,7 @@ pub enum PngError {
     Checksum {
         /// The chunk's type, in quotes.
         kind: String,
-        /// Where the chunk starts in the file.
+        /// The position of the chunk in the file.
         at: usize,
         /// The checksum in the file.
         stored: u32,
@@ -41,13 +41,13 @@ pub enum PngError {
         x: usize,
         /// The row, from 0.
         y: usize,
-        /// How many colours the palette has.
+        /// The number of colours of the palette.
         size: usize,
     },
-    /// The header is not where it has to be.
+    /// The header is not the first chunk.
     #[error("found another chunk, expected the header: the picture is damaged")]
     Header,
-    /// What the decoder says.
+    /// The message of the decoder.
     #[error("{0}")]
     Decoder(#[from] DecodingError),
 }
@@ -55,8 +55,8 @@ pub enum PngError {
 /// The bytes before the first chunk.
 pub const SIGNATURE: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
 
-/// Whether the chunks go on to the end of the picture, each with its checksum. Decoders compare
-/// neither those of ancillary chunks nor that of the last one.
+/// Checks that the chunks continue to the end of the picture, each with its checksum. Decoders
+/// check neither those of ancillary chunks nor that of the last one.
 ///
 /// # Errors
 /// A chunk is missing, or has another checksum.
@@ -108,7 +108,7 @@ fn word<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// The picture, decoded in so many bytes of memory at most.
+/// The picture, decoded in a limited number of bytes of memory.
 ///
 /// # Errors
 /// The picture is damaged.
@@ -117,7 +117,7 @@ pub fn decode(bytes: &[u8], memory: u64) -> Result<Raster, PngError> {
         bytes: usize::try_from(memory).unwrap_or(usize::MAX),
     };
     let mut decoder = ::png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // The checksum of the compressed data is not compared unless it is requested.
+    // The checksum of the compressed data is only compared on request.
     decoder.ignore_checksums(false);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);

@@ -1,17 +1,17 @@
-//! Samples as they are in a picture's file, and their grey levels.
+//! Samples of a picture's file, and their grey levels.
 
 /// The samples of a picture, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
     /// Width and height.
     pub size: [usize; 2],
-    /// What the samples of a pixel are.
+    /// The channels of a pixel.
     pub channels: Channels,
     /// The samples.
     pub samples: Samples,
 }
 
-/// What the samples of a pixel are.
+/// The channels of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
     /// A grey level.
@@ -36,7 +36,7 @@ impl Channels {
     }
 }
 
-/// Samples of 8 or 16 bits, from 0 to the largest number of so many bits.
+/// Samples of 8 or 16 bits, from 0 to the largest number of that width.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
     /// 8 bits each.
@@ -49,8 +49,8 @@ pub enum Samples {
 const LUMINANCES: [f32; 3] = [0.212_647_84, 0.715_179_2, 0.072_173_04];
 
 impl Raster {
-    /// The grey levels from 0 to 255. A colour becomes its luma, rounded to 16 bits. Opacities do not
-    /// count.
+    /// The grey levels from 0 to 255. A colour becomes its luma, rounded to 16 bits. Opacities do
+    /// not count.
     pub fn into_levels(self) -> Vec<f32> {
         let count = self.channels.count();
         let is_grey = matches!(self.channels, Channels::Grey | Channels::GreyAlpha);

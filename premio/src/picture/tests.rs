@@ -1,6 +1,6 @@
 use super::*;
 
-/// Every kind of samples that a PNG has is read as it was written.
+/// Every kind of PNG samples is read as it was written.
 #[test]
 fn samples_are_read_as_they_were_written() {
     for channels in [

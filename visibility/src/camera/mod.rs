@@ -1,4 +1,4 @@
-//! Cameras as they are described.
+//! Cameras and their JSON descriptions.
 //!
 //! Either an eye that looks at a target, in perspective or orthographic, or OpenCV's matrices:
 //! image = K (R x + t), in pixels, y down.
@@ -32,7 +32,7 @@ pub enum CameraError {
 }
 
 impl CameraError {
-    /// The bytes of the camera's JSON at which it is, where they are known.
+    /// The byte range of the error in the camera's JSON, where it is known.
     pub fn span(&self, text: &str) -> Option<Range<usize>> {
         let key = match self {
             Self::Text(error) => return error.span.clone(),
@@ -52,13 +52,13 @@ impl CameraError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Raw", into = "Raw")]
 pub struct ViewCamera {
-    /// How it projects.
+    /// The projection model.
     pub model: CameraModel,
-    /// What lies nearer than this along the optical axis is cut away.
+    /// The depth of the near plane along the optical axis: nearer parts are cut away.
     pub near: Option<f64>,
 }
 
-/// How a camera projects.
+/// The projection model of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraModel {
     /// Central projection on a plane at the focal length: x right, y up, unit that of `focal`.
@@ -324,7 +324,7 @@ impl ViewCamera {
     }
 }
 
-/// Numbers that are no smaller have no square.
+/// The limit of numbers, so that their squares do not overflow.
 const FURTHEST: f64 = 1e100;
 
 fn validate_sight(
@@ -372,7 +372,7 @@ fn validate_matrices(
     if k.amax().reaches(FURTHEST) {
         return Err(CameraError::Value("K", "has a number beyond 1e100"));
     }
-    // Files carry few digits: a turn to four digits passes.
+    // Files carry few digits: a rotation to four digits is accepted.
     let off = (r * r.transpose() - Matrix3::identity()).amax();
     let slack = ROUNDING.sqrt().sqrt();
     if !(off.is_within(slack) && r.determinant().is_above_zero()) {

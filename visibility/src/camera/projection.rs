@@ -1,4 +1,4 @@
-//! The projection of a camera, ready to be used.
+//! The projection of a camera.
 //!
 //! Notation: a point's image in homogeneous coordinates is h = (x, y, z) in the camera's frame for
 //! perspective, and (x, y, u) for orthographic, u a length of the part's size, so that a part twice
@@ -167,7 +167,7 @@ impl Projection {
         self.axes[2].dot(&(p - self.origin))
     }
 
-    /// What turns a distance in the image at depth one into a distance in space next to a point.
+    /// The factor from a distance in the image at depth one to a distance in space near a point.
     pub fn scale(&self, p: &Point3<f64>) -> f64 {
         match self.sight {
             ViewRay::Eye(_) => self.depth(p),
@@ -175,8 +175,8 @@ impl Projection {
         }
     }
 
-    /// The length in the image, in the units of the camera, of a unit length in space across the line
-    /// of sight to a point, where it is largest.
+    /// The greatest length in the image, in the units of the camera, of a unit length in space
+    /// perpendicular to the line of sight to a point.
     pub fn magnification(&self, p: &Point3<f64>) -> f64 {
         let linear = self.affine.fixed_view::<2, 2>(0, 0);
         linear.norm() / self.scale(p)
@@ -211,10 +211,10 @@ impl Projection {
         Point2::new(g.x, g.y)
     }
 
-    /// The line of sight through an image point: a point of it before all that is seen, and its unit
-    /// direction into the scene.
+    /// The line of sight through an image point: a point of it nearer than all that is visible, and
+    /// its unit direction into the scene.
     pub fn line_of_sight(&self, image: &Point2<f64>) -> (Point3<f64>, Vector3<f64>) {
-        // The inverse of an affine map is one: only its first two rows are not known.
+        // The inverse of an affine map is affine: only its first two rows are unknown.
         let m = &self.inverse;
         let h = [0, 1].map(|i| m[(i, 0)] * image.x + m[(i, 1)] * image.y + m[(i, 2)]);
         let [x, y, z] = &self.axes;
@@ -255,8 +255,8 @@ impl Projection {
         self.origin
     }
 
-    /// The map to homogeneous image coordinates in the units of the camera, of one to those at depth
-    /// one.
+    /// Converts a map to homogeneous image coordinates at depth one into one to the units of the
+    /// camera.
     pub fn in_units(&self, map: &Matrix3<f64>) -> Matrix3<f64> {
         self.affine * map
     }

@@ -7,18 +7,18 @@ use premio_kernel::brep::topology::{EdgeId, FaceId, Sense};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::predicates::Compare;
 
-/// A clean passage behind another contour.
+/// An unambiguous passage behind another contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passing {
-    /// By how much the quantitative invisibility grows.
+    /// The change of the quantitative invisibility.
     pub by: i32,
     /// The face turned towards the eye that begins to hide.
     pub entered: Option<FaceId>,
     /// The face turned towards the eye that ceases to hide.
     pub left: Option<FaceId>,
-    /// How far the other contour lies before this one, along the line of sight.
+    /// How far the other contour lies in front of this one, along the line of sight.
     pub ahead: f64,
-    /// How far aside of the other contour this one gets, for each unit of its length.
+    /// The lateral distance from the other contour in the image per unit of this one's length.
     pub lateral: f64,
 }
 
@@ -37,9 +37,9 @@ impl Passing {
 /// What a split does to the quantitative invisibility along the arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
-    /// It changes as the other contour says.
+    /// It changes by the passage behind the other contour.
     Pass(Passing),
-    /// What hides there has to be told by the faces at the junction, or counted anew.
+    /// The occluders follow from the faces at the junction, or are counted again.
     Correct,
 }
 
@@ -54,7 +54,7 @@ pub struct Split {
     pub change: Change,
 }
 
-/// A connected stretch of a contour before the near plane.
+/// A connected piece of a contour beyond the near plane.
 #[derive(Debug)]
 pub struct ContourArc<'a> {
     /// The curve in space.
@@ -67,7 +67,7 @@ pub struct ContourArc<'a> {
     pub ends: [Option<u32>; 2],
     /// The contour it belongs to.
     pub contour: u32,
-    /// The edge it is of; none for a limb.
+    /// Its edge; none for a limb.
     pub edge: Option<EdgeId>,
     /// The faces along it, each with the sense in which its loop runs.
     pub faces: Vec<(FaceId, Sense)>,
@@ -77,9 +77,9 @@ pub struct ContourArc<'a> {
     pub image: Image,
     /// Where the image turns back on itself.
     pub turns: Vec<f64>,
-    /// The image in stretches, where it is neither a line nor a conic.
+    /// The monotone arcs of the image, where it is neither a line nor a conic.
     pub stretches: Vec<MonotoneArc>,
-    /// A box that holds the image.
+    /// A box that contains the image.
     pub hull: ImageBox,
     /// Where it is cut, in no order.
     pub splits: Vec<Split>,
@@ -93,7 +93,7 @@ impl ContourArc<'_> {
         ends.chain(self.splits.iter().map(|split| (split.junction, split.t)))
     }
 
-    /// About how long the image is between the first and the last of some parameters.
+    /// The approximate length of the image between the first and the last of some parameters.
     pub fn length_between(&self, t: &[f64]) -> f64 {
         let (Some(&lo), Some(&hi)) = (t.first(), t.last()) else {
             return 0.0;
@@ -108,7 +108,7 @@ impl ContourArc<'_> {
             .sum()
     }
 
-    /// The runs of stretches whose images may meet a box, each by its breaks.
+    /// The runs of monotone arcs whose images may intersect a box, each by its breaks.
     pub fn runs_next_to(&self, hull: &ImageBox) -> Vec<Vec<f64>> {
         let mut runs: Vec<Vec<f64>> = Vec::new();
         for stretch in self.stretches.iter().filter(|s| s.bounds.intersects(hull)) {

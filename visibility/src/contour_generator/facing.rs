@@ -1,4 +1,4 @@
-//! Which way faces are turned next to an edge, and where a smooth edge is the limb.
+//! The orientation of faces to the eye at an edge, and where a smooth edge is the limb.
 //!
 //! Notation: p a point of the edge, t its tangent, N the outward normal of a face there, v the unit
 //! vector from p towards the eye, w = N × t the tangent vector into the face, S the face's shape
@@ -16,7 +16,7 @@ use premio_kernel::brep::topology::{CoedgeId, EdgeId, Sense};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 
-/// Which way a face is turned next to a point of its boundary.
+/// The orientation of a face to the eye near a point of its boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
     /// Towards the eye.
@@ -27,16 +27,16 @@ pub enum Facing {
     EdgeOn,
 }
 
-/// The distance within which a limb runs along an edge, in multiples of the resolution: both are
-/// found by a few operations of their own.
+/// The distance within which a limb coincides with an edge, in multiples of the resolution: both
+/// are computed in a few operations of their own.
 const ALONG: f64 = 16.0;
 
-/// Where in a range of an edge its faces are looked at. Not in the middle: there a symmetric part
-/// has its special points.
+/// The position in a range of an edge at which its faces are evaluated. It is not the middle,
+/// because a symmetric part has its special points there.
 const PLACE: f64 = 0.47;
 
-/// Whether an edge is the limb over a range of its parameter that no limb of its faces ends in: its
-/// faces are turned differently there.
+/// Whether an edge is the limb over a range of its parameter in which no limb of its faces ends:
+/// its faces have different orientations there.
 pub fn is_limb(scene: &Scene<'_>, edge: EdgeId, [lo, hi]: [f64; 2]) -> bool {
     let t = lo + (hi - lo) * PLACE;
     let coedges = &scene.brep.topology.edge(edge).coedges;
@@ -45,7 +45,7 @@ pub fn is_limb(scene: &Scene<'_>, edge: EdgeId, [lo, hi]: [f64; 2]) -> bool {
     facings.any(|other| Some(other) != first)
 }
 
-/// Which way the face of a coedge is turned next to the point of the edge with the parameter `t`.
+/// The orientation of the face of a coedge near the point of the edge with the parameter `t`.
 pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
     let topology = &scene.brep.topology;
     let face = topology.face_of(coedge);
@@ -81,8 +81,8 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
     }
 }
 
-/// Whether all of a surface is seen edge-on: a plane along the line of sight, or a cylinder with its
-/// axis along parallel sight.
+/// Whether all of a surface is seen edge-on: a plane along the line of sight, or a cylinder with
+/// its axis along parallel sight.
 pub fn is_edge_on(scene: &Scene<'_>, surface: &Surface) -> bool {
     match (surface, scene.projection.sight) {
         (Surface::Plane(s), _) => scene.edge_on(&s.frame.origin, &s.frame.z),

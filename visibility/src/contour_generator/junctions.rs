@@ -1,4 +1,5 @@
-//! The points in which arcs of contours end or are cut, and what of the boundary they lie on.
+//! The junctions in which arcs of contours end or are cut, and the entity of the boundary that each
+//! lies on.
 
 use crate::camera::projection::Projection;
 use crate::image_curve::flat_of;
@@ -12,7 +13,7 @@ use serde::Serialize;
 pub enum JunctionKind {
     /// A vertex of the part, or the apex of a cone.
     Vertex,
-    /// Two contours cross in the image, one before the other in space (definition 4.4).
+    /// Two contours cross in the image, one in front of the other in space (definition 4.4).
     T,
     /// The line of sight is along the limb (definition 4.5).
     Cusp,
@@ -32,36 +33,36 @@ pub enum JunctionKind {
 /// A point where pieces of contours end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Junction {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: u32,
-    /// What happens there.
+    /// Its kind.
     pub kind: JunctionKind,
-    /// Its place in the image, in the camera's unit.
+    /// Its position in the image, in the camera's unit.
     pub point2: [f64; 2],
-    /// Its place in space; at a T-junction, on the contour behind.
+    /// Its position in space; at a T-junction, on the farther contour.
     pub point3: [f64; 3],
-    /// The contours that meet there; at a T-junction the nearer one first.
+    /// The contours there; at a T-junction the nearer one first.
     pub contours: Vec<u32>,
 }
 
-/// What of the boundary a junction lies on.
+/// The entity of the boundary that a junction lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JunctionSupport {
     /// A vertex.
     Vertex(VertexId),
     /// The inside of an edge.
     Edge(EdgeId),
-    /// The inside of a face, or nothing shared.
+    /// The inside of a face, or no common entity.
     Alone,
 }
 
-/// What is known of a junction, besides what the view reports.
+/// The data of a junction that the view does not report.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     site: JunctionSupport,
     /// Its image at depth one.
     image: [f64; 2],
-    /// Whether another contour passes before it or next to it in the image.
+    /// Whether another contour passes in front of it or next to it in the image.
     crowded: bool,
 }
 
@@ -71,13 +72,13 @@ pub struct Junctions<'p> {
     projection: &'p Projection,
     /// By their ids.
     pub list: Vec<Junction>,
-    /// By junction: what is known of it besides.
+    /// By junction: the data that the view does not report.
     known: Vec<Known>,
     vertices: Vec<Option<u32>>,
 }
 
 impl<'p> Junctions<'p> {
-    /// None yet, for a part with so many vertices.
+    /// An empty list, for a part with a number of vertices.
     pub fn new(projection: &'p Projection, vertices: usize) -> Self {
         Self {
             projection,
@@ -105,7 +106,7 @@ impl<'p> Junctions<'p> {
         id
     }
 
-    /// What a junction lies on.
+    /// The entity that a junction lies on.
     pub fn site(&self, id: u32) -> JunctionSupport {
         self.known[id as usize].site
     }
@@ -120,7 +121,7 @@ impl<'p> Junctions<'p> {
         self.list[id as usize].kind
     }
 
-    /// Notes that another contour passes a junction in the image.
+    /// Marks a junction that another contour passes in the image.
     pub fn mark_ambiguous(&mut self, id: u32) {
         self.known[id as usize].crowded = true;
     }
@@ -140,7 +141,7 @@ impl<'p> Junctions<'p> {
         id
     }
 
-    /// The place of a junction.
+    /// The position of a junction in space.
     pub fn point(&self, id: u32) -> Point3<f64> {
         Point3::from(self.list[id as usize].point3)
     }

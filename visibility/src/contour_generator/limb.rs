@@ -56,8 +56,8 @@ fn local(frame: &Frame, sight: &ViewRay) -> LocalSight {
     }
 }
 
-/// The limbs of a surface; `resolution` is the resolution, and `tilt` the sine of the angle to parallel sight
-/// that nothing of the part comes to as much as that by.
+/// The limbs of a surface. `resolution` is the resolution of the part. `tilt` is the sine of the
+/// angle to parallel sight below which the whole part deviates by less than the resolution.
 pub fn limbs(
     surface: &Surface,
     sight: &ViewRay,
@@ -201,8 +201,8 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Lim
     Some(angles.map(circle).to_vec())
 }
 
-/// Seen across its axis from far away, cos φ cos(θ - α) = 0: the circles at the top and at the
-/// bottom, and two circles of the tube, which cross them.
+/// For parallel sight perpendicular to its axis, cos φ cos(θ - α) = 0: the circles at the top and
+/// at the bottom, and two circles of the tube, which cross them.
 fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
     let LocalSight::Direction(d) = sight else {
         return None;
@@ -262,7 +262,7 @@ fn torus_form(s: &Torus, sight: &LocalSight) -> BivariateTrigPoly {
     k
 }
 
-/// About how fast N·r changes with the angle of the normal.
+/// The approximate rate of change of N·r with the angle of the normal.
 fn slope(s: &Torus, sight: &LocalSight) -> f64 {
     match sight {
         LocalSight::Eye(e) => e.norm() + s.major,
@@ -270,11 +270,12 @@ fn slope(s: &Torus, sight: &LocalSight) -> f64 {
     }
 }
 
-/// The surfaces that cut the limbs out of a surface, and meet it across there. For a quadric that
-/// is the polar plane of the eye. Across a torus's axis it is the plane of the two circles of the
-/// tube and the cylinder through those at the top and at the bottom: each by itself determines where a
-/// curve crosses a limb however near to another, which their product does not. None where the
-/// whole surface is seen edge-on or from inside, and where no such surface is known.
+/// The surfaces that intersect a surface transversally in its limbs. For a quadric that is the
+/// polar plane of the eye. For parallel sight perpendicular to a torus's axis, it is the plane of
+/// the two circles of the tube and the cylinder through those at the top and at the bottom. Each by
+/// itself determines where a curve crosses a limb, however near to another limb; their product does
+/// not. None where the whole surface is seen edge-on or from inside, and where no such surface is
+/// known.
 pub fn cutters(surface: &Surface, sight: &ViewRay) -> Vec<Surface> {
     match surface {
         Surface::Torus(s) => side_cutters(s, sight),
@@ -303,12 +304,12 @@ fn side_cutters(s: &Torus, sight: &ViewRay) -> Vec<Surface> {
     vec![Surface::Plane(plane), Surface::Cylinder(cylinder)]
 }
 
-/// Whether a direction of sight, in a torus's frame, is across its axis.
+/// Whether a direction of sight, in a torus's frame, is perpendicular to its axis.
 fn is_across(direction: &Vector3<f64>) -> bool {
     direction.z.is_within(ROUNDING)
 }
 
-/// The polar plane of the eye with respect to a quadric: it cuts the limb out of the surface.
+/// The polar plane of the eye with respect to a quadric: it intersects the surface in the limb.
 /// None for planes and tori, and where the whole surface is seen edge-on or from inside.
 fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
     let f = surface.frame();

@@ -119,7 +119,8 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         }
     }
 
-    /// The parameters at which the limbs of a surface, and what cuts these out, meet an edge on it.
+    /// The parameters at which the limbs of a surface, and the surfaces that cut these out,
+    /// intersect an edge on it.
     fn intersects(
         &self,
         surface: &Surface,
@@ -161,8 +162,8 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         found.extend(range.into_iter().filter(|t| open && met(t)));
     }
 
-    /// The same on a torus: at the limbs' nodes, where an edge passes through one, which are known
-    /// better than where it meets the limbs.
+    /// The parameters on a torus. Where an edge passes through a node of the limbs, that is used,
+    /// because it is known more accurately than the intersections with the limbs.
     fn torus_meets(&self, s: &Torus, edge: EdgeId, limbs: &[Limb], found: &mut Vec<f64>) {
         let (brep, resolution) = (self.scene.brep, self.scene.resolution);
         let (curve, range) = (brep.curve(edge), brep.range(edge));
@@ -213,7 +214,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         id
     }
 
-    /// Keeps the stretches of a limb between `ends` that lie in the face.
+    /// Keeps the pieces of a limb between `ends` that lie in the face.
     fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
         let curve = &limb.curve;
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -249,7 +250,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         let [lo, hi] = range;
         let at = |part: f64| limb.curve.point(lo + (hi - lo) * part);
         let locator = self.scene.locator.face(face);
-        // On the boundary means that the limb runs along an edge, which stands for it.
+        // A limb on the boundary runs along an edge, which represents it.
         let inside = [0.5, 0.31, 0.73]
             .iter()
             .map(|&part| locator.place(&at(part)))

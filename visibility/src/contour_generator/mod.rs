@@ -1,5 +1,6 @@
-//! Contour generators: the curves in space that are seen as contours. Edges, limbs with their cusps, and
-//! the arcs of both before the camera's near plane, with the junctions at their ends.
+//! Contour generators: the curves in space whose images are contours. These are edges, limbs with
+//! their cusps, and the arcs of both beyond the camera's near plane, with the junctions at their
+//! ends.
 
 pub mod contour_arc;
 pub(crate) mod facing;

@@ -35,7 +35,7 @@ pub enum ViewError {
     /// The eye lies in the material.
     #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]
     EyeInside(Point3<f64>),
-    /// The eye is so far that f64 values do not keep apart there what the resolution does.
+    /// The eye is so far away that f64 coordinates there cannot resolve the resolution.
     #[error(
         "the eye is {distance:.3e} away from the part, beyond the limit of {most:.3e} for this resolution"
     )]
@@ -55,7 +55,7 @@ pub fn contours(brep: &Brep, camera: &ViewCamera, resolution: f64) -> Result<Con
     contours_with(brep, camera, resolution, Method::Propagated)
 }
 
-/// The same with the choice of how quantitative invisibility is found.
+/// The contours, with the method for quantitative invisibility.
 pub fn contours_with(
     brep: &Brep,
     camera: &ViewCamera,
@@ -147,7 +147,7 @@ pub fn part_size(brep: &Brep) -> f64 {
     if size.is_finite() { size } else { 1.0 }
 }
 
-/// An arc on its way to become arcs of a contour.
+/// An arc from which the arcs of a contour are made.
 #[derive(Clone)]
 struct Source<'a> {
     curve: &'a Curve,
@@ -223,7 +223,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         }
     }
 
-    /// Makes a contour of an edge, or of a part of it.
+    /// Adds the contour of an edge, or of a part of it.
     fn edge(&mut self, mut source: Source<'a>, kind: ContourKind, smooth: bool) {
         source.contour = self.contours.len() as u32;
         let seen = self.image(&source);
@@ -232,7 +232,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         self.contour_arc(source, seen);
     }
 
-    /// A smooth edge, cut where it begins or ceases to be the limb.
+    /// The parts of a smooth edge, cut where it begins or ceases to be the limb.
     fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, ContourKind)> {
         let kind = |range: [f64; 2]| match is_limb(self.scene, edge, range) {
             true => ContourKind::Limb,
@@ -355,7 +355,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         }
     }
 
-    /// Makes an arc of an arc that is not cut.
+    /// Adds an arc that is not cut.
     fn push(&mut self, source: Source<'a>, mut seen: Image) {
         let (range, closed) = (source.range, source.closed);
         let [lo, hi] = range;
@@ -388,7 +388,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             Some(period) => lo + (t - lo).rem_euclid(period),
             None => t,
         };
-        // A turn at the very end of an arc is no point of its own.
+        // A turning point at the end of an arc is not a separate point.
         let ends_at = [source.curve.point(lo), source.curve.point(hi)];
         let near = SPACE_TOLERANCE * self.scene.resolution;
         let at_end = |t: f64| {

@@ -1,4 +1,4 @@
-//! The contours for a viewpoint, as they are handed on (`premio.contours/1`).
+//! The contours for a viewpoint, as they are written (`premio.contours/1`).
 
 mod builder;
 
@@ -53,7 +53,7 @@ pub enum ImageCurve {
 /// A contour: the projection of an edge, of a part of one, or of a limb inside a face.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contour {
-    /// Its place in the list.
+    /// Its index in the list.
     pub id: u32,
     /// What it is the projection of.
     pub kind: ContourKind,
@@ -72,7 +72,7 @@ pub struct Contour {
     pub pieces: Vec<ContourPiece>,
 }
 
-/// How long the steps took, in seconds.
+/// The run times of the steps, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContourSeconds {
     /// Limbs and cusps.
@@ -90,18 +90,18 @@ pub struct Contours {
     pub schema: &'static str,
     /// The viewpoint.
     pub camera: ViewCamera,
-    /// What lies this near to each other coincides, in the part's unit.
+    /// The distance within which points coincide, in the part's unit.
     pub resolution: f64,
     /// The contours.
     pub contours: Vec<Contour>,
     /// The junctions.
     pub junctions: Vec<Junction>,
-    /// How long it took.
+    /// The run times.
     pub seconds: ContourSeconds,
 }
 
 impl Contours {
-    /// Puts `n` points, spread over the inside of each piece, into its samples.
+    /// Sets the samples of each piece to `n` points spread over its inside.
     pub fn sample(&mut self, n: usize) {
         for contour in &mut self.contours {
             for piece in &mut contour.pieces {

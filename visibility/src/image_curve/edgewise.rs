@@ -1,9 +1,9 @@
-//! Curves without a closed form on a surface that is seen edge-on: a branch's mouth on the wall of
-//! a pipe seen along its axis. Their images lie on the surface's, a line or a conic, and turn back
-//! on themselves.
+//! Curves without a closed form on a surface that is seen edge-on, such as the mouth of a branch on
+//! the wall of a pipe seen along its axis. Their images lie on the surface's image, a line or a
+//! conic, and turn back on themselves.
 //!
-//! Two such curves on one surface overlap; every other curve crosses them where it passes the
-//! surface. So nothing of the image has to be searched in two parameters.
+//! Two such curves on one surface overlap. Every other curve crosses them where it intersects the
+//! surface. So no image has to be searched in two parameters.
 
 use crate::camera::projection::{Projection, ViewRay};
 use nalgebra::Point3;
@@ -23,17 +23,17 @@ use premio_kernel::number::roots::{Roots, isolate};
 pub struct Edgewise {
     /// A cylinder seen along its axis.
     pub carrier: Cylinder,
-    /// The parameters of the turns.
+    /// The parameters of the turning points.
     pub turns: Vec<f64>,
 }
 
-/// Places that determine whether a curve lies on a surface: no curve of the kinds there are meets a
-/// cylinder in so many points of a range without lying on it, other than by design.
+/// The number of points that determine whether a curve lies on a surface: no other curve of these
+/// kinds intersects a cylinder in so many points of a range, unless it is constructed to.
 const PLACES: usize = 17;
 
 impl Edgewise {
-    /// The curve over `range` on one of the surfaces, if that is seen edge-on: closer to parallel sight
-    /// than `tilt`. `resolution` is the resolution.
+    /// The curve over `range` on one of the surfaces, if that is seen edge-on: its angle to
+    /// parallel sight has a sine of less than `tilt`. `resolution` is the resolution of the part.
     pub fn new<'a>(
         curve: &Curve,
         range: [f64; 2],
@@ -48,7 +48,8 @@ impl Edgewise {
             Surface::Cylinder(s) if s.frame.z.cross(&sight).norm().is_within(tilt) => Some(*s),
             _ => None,
         })?;
-        // x y' - y x' vanishes; it is the square of the radius times the angle's derivative.
+        // The turning points are zeros of x y' - y x', the square of the radius times the angle's
+        // derivative.
         let f = |t: Interval| {
             let [x, y, _] = carrier.frame.local(curve.jet_over(t));
             Jet {
@@ -71,7 +72,7 @@ impl Edgewise {
         (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).is_within(near))
     }
 
-    /// Where another curve passes the carrier.
+    /// The parameters at which another curve intersects the carrier.
     pub fn passed_by(&self, curve: &Curve, range: [f64; 2], resolution: f64) -> Vec<f64> {
         match cut(curve, range, &Surface::Cylinder(self.carrier), resolution) {
             Roots::Everywhere => Vec::new(),
@@ -90,7 +91,7 @@ impl Edgewise {
     ) {
         let q = self.carrier.frame.coordinates(&p);
         let size = q.x.hypot(q.y);
-        // The image of the axis is no point of the circle's.
+        // The image of the axis is not on the circle's image.
         if size.is_exactly(0.0) {
             return;
         }

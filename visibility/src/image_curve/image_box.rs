@@ -12,13 +12,13 @@ pub struct ImageBox {
 }
 
 impl ImageBox {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         min: [f64::INFINITY; 2],
         max: [f64::NEG_INFINITY; 2],
     };
 
-    /// The smallest box that holds this one and a point.
+    /// The smallest box that contains this one and a point.
     pub fn with(self, p: [f64; 2]) -> Self {
         Self {
             min: [self.min[0].min(p[0]), self.min[1].min(p[1])],
@@ -26,7 +26,7 @@ impl ImageBox {
         }
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both.
     pub fn hull(self, other: &Self) -> Self {
         self.with(other.min).with(other.max)
     }

@@ -25,8 +25,8 @@ use std::f64::consts::TAU;
 pub enum Basis {
     /// cos t, sin t, 1.
     Circular,
-    /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a factor,
-    /// over its chord m.
+    /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a
+    /// factor, over its chord m.
     Graph(Conic),
     /// cosh t, sinh t, 1.
     Hyperbolic,
@@ -129,11 +129,11 @@ fn unit_line(l: Vector3<f64>) -> Vector3<f64> {
     l / l.x.hypot(l.y).max(l.z.abs())
 }
 
-/// The parameter beyond which a hyperbola is so near to its asymptotes that its conic, not told from
-/// two lines, loses digits by its square's exponential.
+/// The parameter beyond which a hyperbola is indistinguishable from its asymptotes: its conic loses
+/// digits exponentially in its square.
 const SHARP: f64 = 8.0;
 
-/// The image of a curve over `range`; `resolution` is the resolution.
+/// The image of a curve over `range`; `resolution` is the resolution of the part.
 pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, resolution: f64) -> Image {
     let conic = |frame: &Frame, a: f64, b: f64, basis: Basis| {
         conic_image(frame, a, b, basis, projection, resolution)
@@ -178,7 +178,7 @@ fn conic_image(
     let map = map_of(frame, a, b, projection);
     let (towards, away) = projection.towards_eye(&frame.origin);
     let tilt = towards.dot(&frame.z).abs();
-    // Thinner than the resolution, or of a plane so near to the eye.
+    // The image is thinner than the resolution, or the plane is that near to the eye.
     let reach = match basis {
         Basis::Circular => a.max(b),
         _ if away.is_finite() => away,
@@ -219,7 +219,7 @@ fn map_of(frame: &Frame, a: f64, b: f64, projection: &Projection) -> Matrix3<f64
 
 /// The parameters in a range at which the image of a conic that is seen edge-on folds back.
 pub fn folds_of_conic(curve: &Curve, range: [f64; 2], projection: &Projection) -> Vec<f64> {
-    // At any resolution it is seen edge-on.
+    // An infinite resolution makes it edge-on.
     image(curve, range, projection, f64::INFINITY).turns(range)
 }
 
@@ -281,7 +281,8 @@ impl Image {
                 let half = (k0 / size).acos();
                 [middle - half, middle + half]
             }
-            // With s = 1 - β t - α x: f' g - f g' = x/s, f' = (κ t + β x)/s, g' = 1; a quadratic in m.
+            // With s = 1 - β t - α x: f' g - f g' = x/s, f' = (κ t + β x)/s, g' = 1; a quadratic in
+            // m.
             Basis::Graph(c) => {
                 let t = |m: f64| c.end_of_chord(m).unwrap_or(f64::NAN);
                 let square = 2.0 * (k0 + c.shear * k1) - c.flatness * k2;

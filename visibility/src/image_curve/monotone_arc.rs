@@ -1,10 +1,10 @@
-//! Curves without a closed form, cut into stretches over which the image keeps its direction.
+//! Curves without a closed form, cut into monotone arcs, over which the image keeps its direction.
 //!
-//! Notation: p(t) is the image at depth one. Over a stretch p' lies within a narrow cone about a
-//! unit direction e, by intervals, so the image is a graph over e and over every direction near e.
-//! Where p' vanishes no interval has a direction; there the stretches shrink until the image of
-//! what is left is one point within the resolution: a dot. It holds a cusp, or a turn at which the
-//! image goes back the way it came.
+//! Notation: p(t) is the image at depth one, and e the unit direction of a monotone arc. Over the
+//! arc intervals prove that p' lies within a narrow cone about e, so the image is a graph over e
+//! and over every direction near e. Where p' vanishes, no interval has a direction. There the arcs
+//! are divided until the image of what remains is one point within the resolution: a dot. It
+//! contains a cusp, or a turning point at which the image reverses.
 
 use crate::camera::projection::Projection;
 use crate::image_curve::image_box::ImageBox;
@@ -16,19 +16,19 @@ use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 
-/// The tangent of the greatest angle between a stretch's direction and its cone's sides.
+/// The tangent of the greatest angle between an arc's direction and the sides of its cone.
 const NARROW: f64 = 0.5;
 
-/// The sine of the angle up to which the sides of a cusp are taken not to cross, without proof: so
-/// slight a turn hardly brings a curve back over the way it came.
+/// The sine of the angle up to which the sides of a cusp are assumed not to cross, without proof:
+/// so small a turn hardly brings a curve back over itself.
 const SLIGHT: f64 = 1.0 / 64.0;
 
-/// How the image of a stretch runs.
+/// The cone of directions of the image of a monotone arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionCone {
     /// The unit direction, with growing parameter.
     pub direction: [f64; 2],
-    /// The tangent of half the angle of the cone about it that holds the derivative.
+    /// The tangent of half the angle of the cone about it that contains the derivative.
     pub spread: f64,
     /// Whether the image bends to the left (positive) or to the right throughout.
     pub bend: Option<f64>,
@@ -52,9 +52,9 @@ pub struct MonotoneArc {
     pub range: [f64; 2],
     /// The images of both ends.
     pub ends: [[f64; 2]; 2],
-    /// A box that holds the image.
+    /// A box that contains the image.
     pub bounds: ImageBox,
-    /// How it runs; none for a dot.
+    /// Its cone of directions; none for a dot.
     pub course: Option<DirectionCone>,
 }
 
@@ -105,7 +105,7 @@ fn course([x, y]: &[Jet<Interval>; 2]) -> Option<DirectionCone> {
     })
 }
 
-/// Cuts a curve over a range into stretches, in order; `near` is what counts as one point, as a
+/// Cuts a curve over a range into monotone arcs, in order; `near` is the size of one point, as a
 /// distance in space.
 pub fn stretches(
     curve: &Curve,
@@ -156,8 +156,7 @@ pub fn stretches(
     found
 }
 
-/// The parameters at which an image goes back the way it came, or has a cusp: where its derivative
-/// vanishes.
+/// The parameters at which an image reverses or has a cusp: its derivative vanishes there.
 pub fn turns(curve: &Curve, stretches: &[MonotoneArc], projection: &Projection) -> Vec<f64> {
     let dots = stretches.iter().filter(|s| s.course.is_none());
     dots.filter_map(|dot| {
@@ -200,12 +199,11 @@ pub fn passes(
     }
 }
 
-/// How many stretches from the first on, and not counting it, the curve certainly does not cross
-/// the first.
+/// The number of arcs after the first that certainly do not cross the first.
 ///
-/// A graph over one direction does not cross itself, nor does a convex arc that turns by less than
-/// half a turn, nor the two sides of a cusp as long as they bend away from each other, or have
-/// hardly turned from its line.
+/// A graph over one direction does not cross itself. Neither does a convex arc that turns by less
+/// than half a turn. Nor do the two sides of a cusp, as long as they bend away from each other or
+/// have hardly turned from its line.
 pub fn simple_run<'s>(mut all: impl Iterator<Item = &'s MonotoneArc>) -> usize {
     let Some(first) = all.next().and_then(|s| s.course) else {
         return 0;

@@ -1,8 +1,8 @@
-//! Real roots of polynomials to the fourth degree on an interval, on plain f64 values.
+//! Real roots of polynomials up to degree four on an interval, in f64.
 //!
 //! The roots of each derivative separate those of the next lower one, so each is bracketed. Where
-//! an extremum is as good as zero, by the caller's measure, the polynomial touches zero: a double
-//! root, however rounding would split it.
+//! an extremum is zero by the caller's measure, the polynomial touches zero: it is a double root,
+//! even if rounding splits it.
 
 use premio_kernel::number::bisection::bisect_newton;
 use premio_kernel::number::predicates::Compare;
@@ -35,8 +35,8 @@ impl Few {
     }
 }
 
-/// The roots of the polynomial in [lo, hi] at which it changes its sign; `touches` tells, from a
-/// parameter and the value there, whether the value is as good as zero.
+/// The roots of the polynomial in [lo, hi] at which it changes its sign. `touches` decides, from a
+/// parameter and the value there, whether the value counts as zero.
 pub fn crossings(
     k: &QuarticPolynomial,
     [lo, hi]: [f64; 2],

@@ -1,11 +1,14 @@
-//! What the faces at a junction hide of the contours that run out of it: the correction with which
-//! quantitative invisibility is carried from one contour to another (section 4.1.2 of the paper).
+//! The correction at a junction: which of its faces hide the contours that leave it. Quantitative
+//! invisibility is propagated from one contour to another with it (section 4.1.2 of the paper).
 //!
-//! Next to a vertex a face is a sector of its tangent plane, and a contour its tangent: the line of
-//! sight over P + ε d meets the plane of a face with the normal N at the height s = -ε d·N / v·N,
-//! over the place ε (d + s v) of the sector. Where a limb ends on an edge, or has a cusp, the face
-//! is folded, and the terms of second order decide. An answer is given only where all this is
-//! plain; elsewhere the faces are counted anew.
+//! Notation: P is the junction, d the direction of a contour there, ε its length, v the unit vector
+//! towards the eye, N the normal of a face.
+//!
+//! Near a vertex a face is a sector of its tangent plane, and a contour its tangent. The line of
+//! sight over P + ε d intersects the plane of a face at the height s = -ε d·N / v·N, over the point
+//! ε (d + s v) of the sector. Where a limb ends on an edge, or has a cusp, the face folds, and the
+//! terms of second order decide. A result is given only where all this is unambiguous; elsewhere
+//! the faces are counted again.
 
 use crate::contour_generator::contour_arc::ContourArc;
 use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
@@ -45,21 +48,22 @@ impl End<'_, '_> {
     }
 }
 
-/// Sines and angles less than this are not plain.
-const PLAIN: f64 = 1.0 / 64.0;
+/// Sines and angles less than this are ambiguous.
+const SIGNIFICANT: f64 = 1.0 / 64.0;
 
-fn is_plain(x: f64) -> bool {
-    x.abs().is_beyond(PLAIN)
+fn is_significant(x: f64) -> bool {
+    x.abs().is_beyond(SIGNIFICANT)
 }
 
-/// What a face does to a contour next to a junction.
+/// The effect of a face on a contour near a junction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Effect {
     /// It does not hide it.
     Clear,
-    /// It hides it, so high above it along the line of sight in terms of the way from the junction.
+    /// It hides it, at this height above it along the line of sight per unit distance from the
+    /// junction.
     Hides(f64),
-    /// It is not plain.
+    /// It is ambiguous.
     Unclear,
 }
 
@@ -72,9 +76,9 @@ struct Corner {
     /// The outward normal.
     normal: Vector3<f64>,
     /// The cosine between the normal and the line of sight; none where the face has no normal, or
-    /// its limb passes.
+    /// its limb passes through the point.
     facing: Option<f64>,
-    /// Where the loop leaves the point.
+    /// The direction in which the loop leaves the point.
     out: Vector3<f64>,
     /// The angle of the face there, counterclockwise from `out` as seen from outside.
     angle: f64,
@@ -93,7 +97,7 @@ pub struct Corrections<'s, 'a> {
     scene: &'s Scene<'a>,
     /// The pairs of coedges that come to a vertex and leave it, in the order of the vertices.
     corners: Vec<(VertexId, [CoedgeId; 2])>,
-    /// By vertex: what is seen there, once it was requested.
+    /// By vertex: its visible corners, once they were requested.
     seen: Vec<OnceCell<Seen>>,
 }
 
@@ -120,7 +124,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
     }
 
     /// The faces through a junction that hide a piece next to it, the nearest to the eye first;
-    /// none where that is not plain.
+    /// none where that is ambiguous.
     pub fn hiding(
         &self,
         junctions: &Junctions<'_>,
@@ -164,8 +168,8 @@ impl<'s, 'a> Corrections<'s, 'a> {
         }
     }
 
-    /// The corner of a face at a point, between the directions in which its loop leaves and has
-    /// come; none of a face that hides nothing there.
+    /// The corner of a face at a point, between the directions in which its loop leaves and
+    /// arrives; none for a face that hides nothing there.
     fn corner(
         &self,
         face: FaceId,
@@ -188,7 +192,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         if self.is_apex(face, p) {
             return Some(unclear);
         }
-        if !is_plain(facing) {
+        if !is_significant(facing) {
             return match scene.brep.surface(face) {
                 Surface::Plane(s) if scene.edge_on(&s.frame.origin, &s.frame.z) => None,
                 _ => Some(unclear),
@@ -226,7 +230,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         unambiguous.then(|| slope.normalize() * use_.sense.sign::<f64>())
     }
 
-    /// Where a limb ends on an edge of two faces.
+    /// The hiding faces where a limb ends on an edge of two faces.
     fn on_edge(&self, edge: EdgeId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
         let brep = self.scene.brep;
         let p = end.arc.curve.point(end.t);
@@ -253,9 +257,9 @@ impl<'s, 'a> Corrections<'s, 'a> {
         hiding_of(coedges.iter().map(effect))
     }
 
-    /// What a face that folds where its limb ends on an edge does to one half of the edge: where
-    /// the line of sight runs over the face, and that bends away from it, the half along which the
-    /// face is turned away lies behind the fold.
+    /// The effect of a face that folds where its limb ends on an edge, on one half of the edge.
+    /// Where the line of sight runs along the face, and the face bends away from it, the half along
+    /// which the face is turned away lies behind the fold.
     fn fold(&self, face: FaceId, out: &Vector3<f64>, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
         let scene = self.scene;
         let (v, _) = scene.projection.towards_eye(p);
@@ -265,11 +269,11 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let middle = end.arc.curve.point(end.middle);
         let (w, _) = scene.projection.towards_eye(&middle);
         let facing = scene.brep.outward(face, &middle).dot(&w);
-        if into.is_short_of(-PLAIN) {
+        if into.is_short_of(-SIGNIFICANT) {
             return Effect::Clear;
         }
         let is_grazed = facing.is_within(ROUNDING.sqrt());
-        if into.is_at_most(PLAIN) || is_grazed || !self.bends(face, p, &v) {
+        if into.is_at_most(SIGNIFICANT) || is_grazed || !self.bends(face, p, &v) {
             return Effect::Unclear;
         }
         match bend.is_above_zero() && facing.is_below_zero() {
@@ -284,18 +288,18 @@ impl<'s, 'a> Corrections<'s, 'a> {
         sign * self.scene.brep.surface(face).normal_curvature(p, v)
     }
 
-    /// Whether a face clearly bends along the line of sight: on a torus it may not, next to a cusp.
+    /// Whether a face certainly bends along the line of sight: on a torus it may not, near a cusp.
     fn bends(&self, face: FaceId, p: &Point3<f64>, v: &Vector3<f64>) -> bool {
         let bend = self.bend(face, p, v);
         match self.scene.brep.surface(face) {
-            Surface::Torus(torus) => is_plain(bend * torus.minor),
+            Surface::Torus(torus) => is_significant(bend * torus.minor),
             _ => !bend.is_exactly(0.0),
         }
     }
 
-    /// At a cusp the line of sight meets the torus three times at once. Next to it the third
-    /// meeting is before the limb on one side and behind it on the other; before it, it hides the
-    /// limb where the line of sight leaves the material there.
+    /// The hiding faces at a cusp. There the line of sight has a triple root with the torus. Near
+    /// the cusp the third root lies in front of the limb on one side and behind it on the other. In
+    /// front, it hides the limb where the line of sight leaves the material there.
     fn at_cusp(&self, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
         let &(face, _) = end.arc.faces.first()?;
         let Surface::Torus(torus) = self.scene.brep.surface(face) else {
@@ -305,7 +309,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let (v, _) = self.scene.projection.towards_eye(&p);
         // A fourth of the third coefficient of the torus's quartic along the line of sight.
         let rise = (p - torus.frame.origin).dot(&v);
-        if !is_plain(rise / torus.major) {
+        if !is_significant(rise / torus.major) {
             return None;
         }
         let middle = end.arc.curve.point(end.middle);
@@ -332,7 +336,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
 }
 
 impl Corner {
-    /// What the face does to a piece that leaves its corner.
+    /// The effect of the face on a piece that leaves its corner.
     fn effect(&self, towards: &Vector3<f64>, end: &End<'_, '_>) -> Effect {
         let arc = end.arc;
         if arc.limb && arc.faces.iter().any(|f| f.0 == self.face) {
@@ -348,36 +352,37 @@ impl Corner {
             return Effect::Unclear;
         };
         let below = -d.dot(&self.normal);
-        if below.is_short_of(-PLAIN) {
+        if below.is_short_of(-SIGNIFICANT) {
             return Effect::Clear;
         }
         let over = d + towards * (below / facing);
-        match (self.contains(&over), below.is_beyond(PLAIN)) {
+        match (self.contains(&over), below.is_beyond(SIGNIFICANT)) {
             (Some(false), _) => Effect::Clear,
             (Some(true), true) => Effect::Hides(below / facing),
             _ => Effect::Unclear,
         }
     }
 
-    /// Whether a direction in the tangent plane lies in the sector; none next to its sides.
+    /// Whether a direction in the tangent plane lies in the sector; none near its sides.
     fn contains(&self, w: &Vector3<f64>) -> Option<bool> {
-        if !is_plain(w.norm()) {
+        if !is_significant(w.norm()) {
             return None;
         }
         let turn = self.normal.dot(&self.out.cross(w)).atan2(self.out.dot(w));
         let turn = turn.rem_euclid(TAU);
         let next_to = |side: f64| {
             let away = (turn - side).rem_euclid(TAU);
-            away.min(TAU - away).is_at_most(PLAIN)
+            away.min(TAU - away).is_at_most(SIGNIFICANT)
         };
-        // A sector of no angle or of all angles is not told from the other.
+        // A sector of angle zero is indistinguishable from a full one.
         let unambiguous = !next_to(0.0) && !next_to(self.angle);
-        let sharp = self.angle.min(TAU - self.angle).is_at_most(PLAIN);
+        let sharp = self.angle.min(TAU - self.angle).is_at_most(SIGNIFICANT);
         (unambiguous && !sharp).then_some(turn.is_short_of(self.angle))
     }
 }
 
-/// Those that hide, the nearest to the eye first; none if one is not plain, or two are equally near.
+/// The hiding faces, the nearest to the eye first; none if one is ambiguous, or two are equally
+/// near.
 fn hiding_of(effects: impl Iterator<Item = (FaceId, Effect)>) -> Option<Vec<FaceId>> {
     let mut hiding: Vec<(f64, FaceId)> = Vec::new();
     for (face, effect) in effects {
@@ -389,6 +394,6 @@ fn hiding_of(effects: impl Iterator<Item = (FaceId, Effect)>) -> Option<Vec<Face
     }
     hiding.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut pairs = hiding.windows(2).map(|w| (w[0].0, w[1].0));
-    let apart = pairs.all(|(near, far)| (near - far).is_beyond(PLAIN * near));
+    let apart = pairs.all(|(near, far)| (near - far).is_beyond(SIGNIFICANT * near));
     apart.then(|| hiding.into_iter().map(|h| h.1).collect())
 }

@@ -18,14 +18,14 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use serde::Serialize;
 
-/// A piece of a contour between two junctions: one visibility.
+/// A piece of a contour between two junctions, with constant visibility.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContourPiece {
     /// The range of the curve's parameter, increasing; it may pass the end of a period.
     pub t: [f64; 2],
-    /// Whether nothing lies before it.
+    /// Whether no face occludes it.
     pub visible: bool,
-    /// How many faces turned towards the eye lie before it.
+    /// The number of faces turned towards the eye that lie in front of it.
     pub qi: u32,
     /// The one of them nearest to the eye.
     pub occluder: Option<FaceId>,
@@ -38,35 +38,36 @@ pub struct ContourPiece {
     pub samples: Option<Vec<[f64; 3]>>,
 }
 
-/// How the quantitative invisibility of the pieces is found.
+/// How the quantitative invisibility of the pieces is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Counted once for each connected part of the contours, and carried on from there.
+    /// Counted once for each connected part of the contours, and propagated from there.
     #[default]
     Propagated,
     /// Counted for every piece.
     Recounted,
 }
 
-/// Where in a piece its faces in front are counted, one after the other until an answer is plain. Not
-/// in the middle, where a symmetric part has its special points; at last near the ends, where contours
-/// that part slowly are farthest apart.
+/// The positions in a piece at which its occluders are counted, one after the other until a count
+/// is unambiguous. The middle is not used, because a symmetric part has its special points there.
+/// The last ones are near the ends, where contours that diverge slowly are farthest from each
+/// other.
 const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
 /// The count for a piece of an arc over [lo, hi].
 pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
     let at = |part: f64| count_at(scene, arc, lo + (hi - lo) * part);
-    let mut unplain = Vec::with_capacity(PLACES.len());
+    let mut ambiguous = Vec::with_capacity(PLACES.len());
     for place in PLACES {
         let count = at(place);
         if count.unambiguous {
             return count;
         }
-        unplain.push(count);
+        ambiguous.push(count);
     }
-    // Contours that fall on one another are unplain everywhere, and the counts agree.
-    unplain.sort_by_key(|c| c.qi);
-    unplain.swap_remove(PLACES.len() / 2)
+    // Contours that overlap are ambiguous everywhere, and the counts agree.
+    ambiguous.sort_by_key(|c| c.qi);
+    ambiguous.swap_remove(PLACES.len() / 2)
 }
 
 fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
@@ -77,8 +78,8 @@ fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
             return OriginIncidence::No;
         }
         let surface = scene.brep.surface(face);
-        // A limb that runs along the edge is no farther away than points found on two ways are:
-        // over this length the normal turns with the surface's bend.
+        // A limb along the edge is within the tolerance of points computed in two ways: over this
+        // length the normal turns with the surface's curvature.
         let bend = surface.normal_curvature(p, &v).abs();
         let turned = SPACE_TOLERANCE * (scene.resolution * bend + ROUNDING);
         let grazing = surface.normal(p).dot(&v).is_within(turned);
@@ -94,8 +95,8 @@ fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
     scene.count(p, &arc.curve.tangent(t), &own)
 }
 
-/// The directions across the line of sight that halve the material around an edge, which lies between
-/// each two of its faces.
+/// The directions perpendicular to the line of sight that bisect the material around an edge, which
+/// lies between each two of its faces.
 fn inward(
     scene: &Scene<'_>,
     arc: &ContourArc<'_>,
@@ -111,8 +112,8 @@ fn inward(
     directions.filter(|d| d.norm().is_beyond(0.5)).collect()
 }
 
-/// The pieces of all arcs, in order: one count at one piece of each connected part of the
-/// contours, carried on from there where what hides changes clearly.
+/// The pieces of all arcs, in order: one count at one piece of each connected part of the contours,
+/// propagated from there where the change of the occluders is unambiguous.
 pub fn pieces(
     scene: &Scene<'_>,
     contour_arcs: &mut [ContourArc<'_>],
@@ -155,22 +156,22 @@ fn piece(span: &Span, count: &Occluders) -> ContourPiece {
     }
 }
 
-/// Quantitative invisibility on its way through the connected parts of the contours.
+/// The propagation of quantitative invisibility through the connected parts of the contours.
 struct Carrying<'s, 'a> {
     scene: &'s Scene<'a>,
     contour_arcs: &'s [ContourArc<'s>],
     chains: &'s [Chain],
     junctions: &'s Junctions<'s>,
     corrections: Corrections<'s, 'a>,
-    /// By junction: what hides all contours there, less the faces through the junction.
+    /// By junction: the occluders of all contours there, without the faces through the junction.
     beyond: Vec<Option<Occluders>>,
     /// The arcs through the junctions: junction and arc, in order.
     through: Vec<(u32, u32)>,
-    /// By arc: what hides each span.
+    /// By arc: the occluders of each span.
     counts: Vec<Vec<Option<Occluders>>>,
-    /// The arcs that are connected to what is known.
+    /// The arcs that are connected to known spans.
     next: Vec<u32>,
-    /// Whether what was carried to a junction on two ways agreed.
+    /// Whether the results propagated to each junction on different ways agree.
     sound: bool,
 }
 
@@ -202,8 +203,8 @@ impl<'s, 'a> Carrying<'s, 'a> {
         }
     }
 
-    /// What hides every span; none where the ways to a junction contradict each other, so that a
-    /// change must have been missed.
+    /// The occluders of every span; none where the ways to a junction contradict each other, so
+    /// that a change must have been missed.
     fn counts(mut self) -> Option<Vec<Vec<Occluders>>> {
         for i in 0..self.contour_arcs.len() as u32 {
             self.next.push(i);
@@ -220,7 +221,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         self.counts.into_iter().map(whole).collect()
     }
 
-    /// Counts along an arc, from the end at which something is known.
+    /// Propagates along an arc, from the end at which a count is known.
     fn arc(&mut self, i: usize) {
         let n = self.chains[i].spans.len();
         let first = self.enter(i, 0, 0);
@@ -244,7 +245,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
             let change = between.and_then(|b| self.chains[i].between.get(b));
             let then = if backward { k.wrapping_sub(1) } else { k + 1 };
             known = match change {
-                // What is counted where contours fall on one another is not carried on.
+                // Counts where contours overlap are not propagated.
                 Some(Change::Pass(passing)) if now.unambiguous => {
                     let p = self.contour_arcs[i].curve.point(span.range[exit]);
                     let passing = if backward {
@@ -261,7 +262,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         }
     }
 
-    /// The faces at a junction at an end of a span that hide it there, where it is plain that
+    /// The faces at a junction at an end of a span that hide it there, where it is unambiguous that
     /// these alone make the difference between the contours at the junction.
     fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
         let Span { range, ends, .. } = self.chains[i].spans[k];
@@ -278,7 +279,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         Some((junction, hiding))
     }
 
-    /// What hides a span next to one of its ends, by what is known at the junction there.
+    /// The occluders of a span at one of its ends, from those known at the junction there.
     fn enter(&self, i: usize, k: usize, which: usize) -> Option<Occluders> {
         let junction = self.chains[i].spans[k].ends[which]?;
         let beyond = self.beyond[junction as usize].as_ref()?;
@@ -286,7 +287,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         Some(beyond.before(&hiding))
     }
 
-    /// Notes what hides a span for the others at the junction at one of its ends.
+    /// Records the occluders of a span for the others at the junction at one of its ends.
     fn leave(&mut self, i: usize, k: usize, which: usize, count: &Occluders) {
         if !count.unambiguous {
             return;
@@ -358,7 +359,8 @@ fn order_after(
         let behind = !whole && slot(scene, p, &order, passing.ahead) == Slot::Before(last);
         return behind.then_some(order);
     };
-    // A plane is met once; of another surface a second sheet may hide, and either may end here.
+    // A plane is intersected once; of another surface a second sheet may hide, and either may end
+    // here.
     let plane = matches!(scene.brep.surface(left), Surface::Plane(_));
     if !plane && (!whole || order[k + 1..].contains(&left)) {
         order.truncate(k);
@@ -373,7 +375,7 @@ fn order_after(
     Some(order)
 }
 
-/// Where in an order of faces something is.
+/// A position in the order of faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slot {
     /// Just before the one with this index, behind all others before it.
@@ -382,7 +384,7 @@ enum Slot {
     Unclear(usize),
 }
 
-/// Where in the order of the faces before `p` the distance `ahead` belongs.
+/// The position of the distance `ahead` in the order of the faces in front of `p`.
 fn slot(scene: &Scene<'_>, p: &Point3<f64>, order: &[FaceId], ahead: f64) -> Slot {
     let margin = SPACE_TOLERANCE * scene.resolution;
     for (k, &face) in order.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! The pairs of contours whose images may meet: boxes in an R-tree where there are many, long
-//! contours as chains of boxes.
+//! Broad phase: the pairs of contours whose images may intersect. It uses boxes in an R-tree where
+//! there are many, and chains of boxes for long contours.
 
 use crate::camera::projection::Projection;
 use crate::contour_generator::contour_arc::ContourArc;
@@ -13,14 +13,14 @@ use std::f64::consts::TAU;
 /// A link of a chain: its box in the image, and the arc it belongs to.
 type Link = (ImageBox, u32);
 
-/// So few links are swept in less time than a tree of them takes to build.
+/// The number of links up to which a sweep is faster than building a tree.
 const FEW: usize = 192;
 
-/// A contour is cut into links of about this part of the image's size.
+/// A contour is divided into links of about the image's size over this.
 const LINKS: f64 = 24.0;
 
-/// The parameters at which the image of a conic runs along x or along y, those of a closed one in
-/// the turn that begins at `lo`.
+/// The parameters at which the image of a conic is parallel to x or y, those of a closed one in the
+/// period that begins at `lo`.
 fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
     let mut found = ([0.0; 4], 0);
     let Image::Conic { basis, map, .. } = image else {
@@ -88,8 +88,8 @@ fn links(
     }
 }
 
-/// The pairs of arcs whose images may meet, each once and in order; notes the hull of each
-/// arc's image. `near` is what counts as touching, as a distance in space.
+/// The pairs of arcs whose images may intersect, each once and in order; also sets the hull of each
+/// arc's image. `near` is the touching distance, as a distance in space.
 pub fn candidates(
     contour_arcs: &mut [ContourArc<'_>],
     projection: &Projection,
@@ -121,9 +121,9 @@ pub fn candidates(
         contour_arc.hull = hull;
     }
     let mut pairs = if all.len() <= FEW {
-        few_meeting(&mut all)
+        pairs_by_sweep(&mut all)
     } else {
-        many_meeting(&all)
+        pairs_by_tree(&all)
     };
     let general = |s: &ContourArc<'_>| matches!(s.image, Image::General);
     let own = contour_arcs.iter().enumerate().filter(|(_, s)| general(s));
@@ -133,8 +133,8 @@ pub fn candidates(
     pairs
 }
 
-/// The pairs of arcs whose links meet, by a sweep along x.
-fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
+/// The pairs of arcs whose links intersect, by a sweep along x.
+fn pairs_by_sweep(links: &mut [Link]) -> Vec<(u32, u32)> {
     links.sort_unstable_by(|(a, _), (b, _)| a.min[0].total_cmp(&b.min[0]));
     let mut pairs = Vec::new();
     for (k, (a, i)) in links.iter().enumerate() {
@@ -148,8 +148,8 @@ fn few_meeting(links: &mut [Link]) -> Vec<(u32, u32)> {
     pairs
 }
 
-/// The same by an R-tree.
-fn many_meeting(links: &[Link]) -> Vec<(u32, u32)> {
+/// The pairs of arcs whose links intersect, by an R-tree.
+fn pairs_by_tree(links: &[Link]) -> Vec<(u32, u32)> {
     let boxes = links.iter().map(|(b, i)| {
         let corners = Rectangle::from_corners(b.min, b.max);
         GeomWithData::new(corners, *i)

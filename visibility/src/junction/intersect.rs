@@ -1,9 +1,10 @@
 //! Where two contours cross in the image.
 //!
-//! One contour's points are put into the other's cone of sight: a plane through the eye for a
-//! line, a quadric cone for a conic. Line and line, line and conic are closed forms; two conics
-//! give a polynomial of the fourth degree in the tangent of half the angle; other curves against
-//! these are isolated on their parameter, and two other curves as graphs over a direction.
+//! One contour's points are substituted into the equation of the other's cone of sight: a plane
+//! through the eye for a line, a quadric cone for a conic. Line and line, and line and conic have
+//! closed forms. Two conics give a polynomial of degree four in the tangent of half the angle.
+//! Other curves are isolated on their parameter against these, and two other curves are intersected
+//! as graphs over a direction.
 
 use crate::camera::projection::Projection;
 use crate::contour_generator::contour_arc::ContourArc;
@@ -22,22 +23,22 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_kernel::number::roots::{Root, RootKind, Roots, isolate};
 use std::f64::consts::TAU;
 
-/// How two contours meet in the image.
+/// How two contours intersect in the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlap {
     /// In points only.
     No,
-    /// They are on one curve.
+    /// They lie on one curve.
     Yes,
 }
 
-/// Places that determine whether a curve falls on a line or a conic.
+/// The number of points that determine whether a curve lies on a line or a conic.
 const PLACES: usize = 19;
 
-/// Curves on one another are together over more than the whole by this.
+/// Curves overlap if they coincide over more than the whole divided by this.
 const MOST: f64 = 64.0;
 
-/// A turn without meaning: conics of symmetric parts must not cross at the ends of the halves.
+/// An arbitrary rotation, so that conics of symmetric parts do not cross at the ends of the halves.
 const TURN: f64 = 0.618_033_988_749_894_9;
 
 /// Reports the crossings of two arcs in the image: the parameters on both.
@@ -101,7 +102,7 @@ fn lines(
     Overlap::No
 }
 
-/// Where an arc on a line meets another line in the image.
+/// Reports where an arc intersects a line in the image.
 fn line_parameters(a: &ContourArc<'_>, l: &Vector3<f64>, found: &mut impl FnMut(f64)) {
     match &a.image {
         Image::Line {
@@ -119,8 +120,9 @@ fn line_parameters(a: &ContourArc<'_>, l: &Vector3<f64>, found: &mut impl FnMut(
     }
 }
 
-/// A conic in the image, by the map from its own basis: next to a circle seen almost edge-on the form
-/// in image coordinates has no digits left, and in the basis it is that of the unit circle.
+/// A conic in the image, as the map from its own basis. For a circle seen almost edge-on its form
+/// in image coordinates has no significant digits left. In the basis it is the form of the unit
+/// circle.
 #[derive(Clone, Copy)]
 struct ConicImage<'x> {
     basis: Basis,
@@ -145,8 +147,8 @@ impl<'x> ConicImage<'x> {
         }
     }
 
-    /// Whether an image point is within `near` of it, as a distance in space, or as near as rounding
-    /// tells.
+    /// Whether an image point lies within `near` of it, as a distance in space, or within rounding
+    /// error.
     fn passes(&self, h: &Vector3<f64>, near: f64) -> bool {
         let form = self.basis.conic();
         let point = self.inverse * h;
@@ -157,14 +159,14 @@ impl<'x> ConicImage<'x> {
         point.dot(&half_slope).is_within(reach)
     }
 
-    /// The form of the points of another map that lie on it.
+    /// The form, in the basis of another map, of the points that lie on it.
     fn form_over(&self, map: &Matrix3<f64>) -> Matrix3<f64> {
         let over = self.inverse * map;
         over.tr_mul(&(self.basis.conic() * over))
     }
 
-    /// The parameters at which it crosses a line; where it leaves the line's neighbourhood by no more
-    /// than `near` it only touches it.
+    /// The parameters at which it crosses a line. Where it departs from the line by no more than
+    /// `near`, it only touches.
     fn crossings_with(&self, line: &Vector3<f64>, range: [f64; 2], near: f64) -> Vec<f64> {
         let k = self.map.tr_mul(line);
         let mut roots = Vec::new();
@@ -227,7 +229,7 @@ fn conics(
     Overlap::No
 }
 
-/// Where b(t)ᵀ G b(t) changes its sign, over the range.
+/// Reports where b(t)ᵀ G b(t) changes its sign in the range.
 fn conic_parameters(
     basis: Basis,
     g: &Matrix3<f64>,
@@ -339,8 +341,8 @@ fn general(
     overlap_of(together, a)
 }
 
-/// The least slope of a conic's equation on an arc of it, at some of its points brought to depth
-/// one: by it a value is a distance from the conic, or more. Away from the conic the slope may
+/// The least slope of a conic's equation at some points of an arc of it, normalised to depth one. A
+/// value divided by it is at most the distance from the conic. Away from the conic the slope may
 /// vanish.
 fn least_slope(b: &ContourArc<'_>, projection: &Projection) -> f64 {
     let Some(conic) = ConicImage::new(&b.image) else {
@@ -357,12 +359,13 @@ fn least_slope(b: &ContourArc<'_>, projection: &Projection) -> f64 {
     slopes.fold(f64::INFINITY, f64::min)
 }
 
-/// At how many points, less one, a conic's slope is asked.
+/// The number of intervals between the points at which a conic's slope is evaluated.
 const SLOPES: u32 = 8;
 
-/// Where a root on `a` is a crossing. One that only touches is where the curves meet in space, so
-/// that the other is in front from there on; else it is none. One that is not told from a junction
-/// of both is there: they touch, and its best place may be a long way off.
+/// The place where a root on `a` is a crossing. A root of even multiplicity is a crossing only
+/// where the curves intersect in space, so that the front one changes. A root that is
+/// indistinguishable from a common junction is placed there: the curves touch, and the root may be
+/// a long way off.
 pub fn place_of(
     root: &Root,
     [a, b]: [&ContourArc<'_>; 2],
@@ -383,8 +386,8 @@ pub fn place_of(
     changes.then(|| bisect(root.lo, root.hi, from, nearer))
 }
 
-/// Where a line or conic `b` passes points of another curve `a` in the image, next to a parameter:
-/// one seen edge-on passes them twice.
+/// The branch of a line or conic `b` that passes points of another curve `a` in the image, near a
+/// parameter: one seen edge-on passes them twice.
 struct Branch<'x> {
     a: &'x ContourArc<'x>,
     b: &'x ContourArc<'x>,
@@ -410,7 +413,7 @@ impl Branch<'_> {
         nearest
     }
 
-    /// How far `b` lies before the point of `a` there.
+    /// How far `b` lies in front of the point of `a` there.
     fn ahead(&self, t: f64) -> Option<f64> {
         let p = self.a.curve.point(t);
         let (v, _) = self.projection.towards_eye(&p);
@@ -419,8 +422,8 @@ impl Branch<'_> {
     }
 }
 
-/// Whether the image of a curve lies on the line or conic of another: none of the kinds there are
-/// meets one in so many points otherwise.
+/// Whether the image of a curve lies on the line or conic of another: no other curve of these kinds
+/// intersects one in so many points.
 fn falls_on(a: &ContourArc<'_>, b: &ContourArc<'_>, projection: &Projection, near: f64) -> bool {
     let [lo, hi] = a.range;
     let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
@@ -434,7 +437,8 @@ fn falls_on(a: &ContourArc<'_>, b: &ContourArc<'_>, projection: &Projection, nea
     })
 }
 
-/// What being together over so much of the image of `a` means: next to a touch it is little.
+/// Whether curves overlap that coincide over a length of the image of `a`: near a tangency the
+/// length is short.
 pub fn overlap_of(together: f64, a: &ContourArc<'_>) -> Overlap {
     if (together * MOST).is_beyond(a.length_between(&a.range)) {
         Overlap::Yes
@@ -443,7 +447,7 @@ pub fn overlap_of(together: f64, a: &ContourArc<'_>) -> Overlap {
     }
 }
 
-/// A curve on a surface seen edge-on against any other.
+/// Intersects a curve on a surface seen edge-on with any other.
 fn edgewise(
     on: &Edgewise,
     a: &ContourArc<'_>,
@@ -461,7 +465,7 @@ fn edgewise(
     Overlap::No
 }
 
-/// The parameters at which an arc's image passes that of a point, where it does.
+/// The parameters at which an arc's image passes through that of a point.
 pub fn parameters_at(
     contour_arc: &ContourArc<'_>,
     p: &Point3<f64>,

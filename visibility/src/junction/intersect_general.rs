@@ -1,10 +1,12 @@
 //! Crossings in the image of two curves without a closed form.
 //!
-//! Each curve is a chain of stretches whose images keep their direction. Two stretches that may
-//! meet are graphs over one direction x: the first y = f(x), the second (x(s), y(s)). They cross
-//! where D(s) = y(s) - f(x(s)) changes its sign. If their cones of directions are apart, D is
-//! monotone and its ends decide; else its roots are isolated with their multiplicity, so a touch
-//! is distinguished from two crossings, and curves that fall on one another are seen to do so.
+//! Notation: a monotone arc is a graph over a direction x of the image: the first y = f(x), the
+//! second (x(s), y(s)). The gap D(s) = y(s) - f(x(s)) changes its sign at a crossing.
+//!
+//! Each curve is a chain of monotone arcs, over which the image keeps its direction. If the
+//! direction cones of two arcs are disjoint, D is monotone and its ends decide. Otherwise its roots
+//! are isolated with their multiplicity. So a tangency is distinguished from two crossings, and
+//! curves that overlap are recognised.
 
 use crate::camera::projection::Projection;
 use crate::contour_generator::contour_arc::ContourArc;
@@ -21,20 +23,21 @@ use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_kernel::number::roots::{Function, Root, Roots, isolate};
 
-/// Distances in space within which two roots are one, in multiples of the resolution.
+/// The distance in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;
-/// Curves that are together over no more than this, in multiples of the resolution, cross there or
-/// touch.
+/// Curves that coincide over no more than this length, in multiples of the resolution, cross or
+/// touch there.
 const SHORT: f64 = 256.0;
-/// Newton's steps that follow a curve beyond the end of a stretch, by far less than the stretch.
+/// The Newton steps that extend a curve beyond the end of a monotone arc, by far less than its
+/// length.
 const BEYOND: usize = 3;
 
-/// What two general curves have in common in the image.
+/// The intersections of two general curves in the image.
 #[derive(Default)]
 struct Common<'x> {
     /// The parameters of crossings on both.
     roots: Vec<(f64, f64)>,
-    /// The stretches whose images fall on one another.
+    /// The pieces whose images overlap.
     shared: Vec<Shared<'x>>,
 }
 
@@ -91,7 +94,7 @@ pub fn general_pair<'x>(
     }
 }
 
-/// The pairs of stretches of one curve that may cross.
+/// The pairs of monotone arcs of one curve that may cross.
 fn own_pairs<'x>(a: &'x ContourArc<'_>, both: &mut impl FnMut(&'x MonotoneArc, &'x MonotoneArc)) {
     let n = a.stretches.len();
     let from = |i: usize| a.stretches[i..].iter().chain(&a.stretches[..i]);
@@ -111,7 +114,7 @@ fn own_pairs<'x>(a: &'x ContourArc<'_>, both: &mut impl FnMut(&'x MonotoneArc, &
     }
 }
 
-/// Two stretches as graphs over a common direction.
+/// Two monotone arcs as graphs over a common direction.
 pub struct Graphs<'x> {
     contour_arcs: [&'x ContourArc<'x>; 2],
     a: &'x Curve,
@@ -121,9 +124,9 @@ pub struct Graphs<'x> {
     courses: [DirectionCone; 2],
     /// x and y.
     axes: [[f64; 2]; 2],
-    /// How fast the second graph rises above the first over x.
+    /// The slope of the second graph minus that of the first, over x.
     rise: Interval,
-    /// What turns a distance in the image into one in space.
+    /// The factor from a distance in the image to one in space.
     scale: f64,
 }
 
@@ -165,7 +168,7 @@ impl<'x> Graphs<'x> {
         })
     }
 
-    /// Whether the cones of directions have no line in common.
+    /// Whether the direction cones have no common line.
     fn transversal(&self) -> bool {
         let [p, q] = self.courses;
         let cos = dot2(p.direction, q.direction).abs();
@@ -174,7 +177,8 @@ impl<'x> Graphs<'x> {
         across.is_beyond(cos * (p.spread + q.spread))
     }
 
-    /// Whether the stretches, each a chord with a thickness, are apart across one of the chords.
+    /// Whether the monotone arcs, each a chord with a thickness, are separated across one of the
+    /// chords.
     fn apart(&self, near: f64) -> bool {
         let thickness = [0, 1].map(|k| {
             let [from, to] = self.of[k].ends;
@@ -205,7 +209,7 @@ impl<'x> Graphs<'x> {
         self.axes.map(|k| dot2(k, p))
     }
 
-    /// The parameter over `x` on one of the stretches, or on the curve just beyond its ends.
+    /// The parameter over `x` on one of the monotone arcs, or on the curve just beyond its ends.
     fn parameter(&self, k: usize, curve: &Curve, x: f64) -> f64 {
         let [lo, hi] = self.of[k].range;
         let [from, to] = self.of[k].ends.map(|p| dot2(self.axes[0], p) - x);
@@ -236,13 +240,13 @@ impl<'x> Graphs<'x> {
         [self.a.point(t), self.b.point(s)]
     }
 
-    /// How long the image of the second is between two parameters.
+    /// The length of the second image between two parameters.
     pub fn length(&self, range: [f64; 2]) -> f64 {
         let [from, to] = range.map(|s| self.jet(self.b, s)[0].v);
         (to - from).abs()
     }
 
-    /// What turns a distance in the image into one in space.
+    /// The factor from a distance in the image to one in space.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -268,14 +272,14 @@ impl<'x> Graphs<'x> {
         }
     }
 
-    /// How far the first curve lies before the point of the second with the same image.
+    /// How far the first curve lies in front of the point of the second with the same image.
     pub fn ahead(&self, s: f64) -> Option<f64> {
         let p = self.b.point(s);
         let (v, _) = self.projection.towards_eye(&p);
         Some((self.a.point(self.gap(s).t) - p).dot(&v))
     }
 
-    /// The range of s over which both stretches have points.
+    /// The range of s over which both monotone arcs have points.
     fn common(&self) -> Option<[f64; 2]> {
         let along = |k: usize| {
             let [from, to] = self.of[k].ends.map(|p| dot2(self.axes[0], p));
@@ -284,14 +288,14 @@ impl<'x> Graphs<'x> {
         let (x, y) = (along(0), along(1));
         let (lo, hi) = (x[0].max(y[0]), x[1].min(y[1]));
         if lo.is_beyond(hi) {
-            // Ends that meet within rounding.
+            // Ends that coincide within rounding.
             return None;
         }
         let ends = [lo, hi].map(|x| self.parameter(1, self.b, x));
         Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
     }
 
-    /// Notes the crossings, or that the two are together in the image.
+    /// Records the crossings, or that the two coincide in the image.
     fn cross(self, resolution: f64, common: &mut Common<'x>) {
         if self.apart(resolution / self.scale) {
             return;
@@ -314,13 +318,14 @@ impl<'x> Graphs<'x> {
         }
     }
 
-    /// The crossing of stretches that cross once or not at all.
+    /// The crossing of monotone arcs that cross at most once.
     fn once(&self, [lo, hi]: [f64; 2], resolution: f64) -> Option<(f64, f64)> {
         let (a, b) = (self.gap(lo), self.gap(hi));
         if (a.v * b.v).is_at_most(0.0) {
             return Some(self.crossing([lo, hi], a.v));
         }
-        // Next to an end that is none of the curve's the neighbour decides, but for rounding.
+        // Near an end that is not one of the curve, the neighbouring arc decides, except for
+        // rounding.
         let mut ends = [(lo, a), (hi, b)].into_iter();
         ends.find(|(s, gap)| {
             let last = self.ends(gap.t, *s);
@@ -361,8 +366,8 @@ impl Function for Graphs<'_> {
         gap.scale(self.scale)
     }
 
-    /// By the directions of both: narrow where a curve hardly moves in the image, however wide its
-    /// derivatives are.
+    /// An enclosure from the directions of both curves. It is narrow where a curve hardly moves in
+    /// the image, however wide its derivatives are.
     fn reach(&self, s: Interval) -> Interval {
         let x = |s: f64| self.jet(self.b, s)[0].v;
         let middle = x(s.mid());

@@ -33,14 +33,14 @@ fn passes_once(contour_arc: &ContourArc<'_>, id: u32) -> bool {
         && contour_arc.junctions().any(|(own, _)| own == id)
 }
 
-/// What a contour does to one that passes behind it.
+/// The effect of a contour on one that passes behind it.
 #[derive(Clone, Copy, Debug)]
 struct Hidden {
     /// The face that begins to hide it.
     entered: Option<FaceId>,
     /// The face that ceases to.
     left: Option<FaceId>,
-    /// How far aside it gets, for each unit of its length.
+    /// Its lateral distance from the nearer contour in the image per unit of its length.
     lateral: f64,
 }
 
@@ -49,13 +49,13 @@ struct Search<'s, 'a, 'j, 'p> {
     junctions: &'j mut Junctions<'p>,
     /// (arc, split) found so far.
     splits: Vec<(u32, Split)>,
-    /// By arc: the points of the image at which others that fall on it end.
-    asked: Vec<Vec<[f64; 2]>>,
-    /// What lies behind junctions of other arcs.
+    /// By arc: the image points at which overlapping arcs end and that were already processed.
+    processed: Vec<Vec<[f64; 2]>>,
+    /// The passages behind junctions of other arcs.
     behind: Vec<Behind>,
 }
 
-/// Where a junction of a nearer arc falls on a farther one in the image.
+/// A junction of a nearer arc that coincides with a point of a farther arc in the image.
 #[derive(Clone, Copy, Debug)]
 struct Behind {
     /// The farther arc, and its parameter.
@@ -65,7 +65,7 @@ struct Behind {
     contours: [u32; 2],
 }
 
-/// Finds all T-junctions and notes them as splits of the farther arcs.
+/// Finds all T-junctions and records them as splits of the farther arcs.
 pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &mut Junctions<'_>) {
     split_at_touches(contour_arcs, scene, junctions);
     let pairs = candidates(
@@ -77,15 +77,15 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
         scene,
         junctions,
         splits: Vec::new(),
-        asked: vec![Vec::new(); contour_arcs.len()],
+        processed: vec![Vec::new(); contour_arcs.len()],
         behind: Vec::new(),
     };
     for (i, j) in pairs {
         let (a, b) = (&contour_arcs[i as usize], &contour_arcs[j as usize]);
         let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
         let overlap = cross(a, b, scene.projection, scene.resolution, &mut found);
-        search.crowd_passed(a, b);
-        search.crowd_passed(b, a);
+        search.mark_passed_ambiguous(a, b);
+        search.mark_passed_ambiguous(b, a);
         search.pass_behind(a, (j, b));
         search.pass_behind(b, (i, a));
         if i != j {
@@ -99,7 +99,7 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
             search.mark_all_ambiguous(b);
         }
     }
-    // An image that turns back falls on itself.
+    // An image that turns back overlaps itself.
     for (i, a) in contour_arcs.iter().enumerate() {
         if !a.turns.is_empty() {
             search.overlap((i as u32, a), (i as u32, a));
@@ -122,8 +122,8 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
 }
 
 impl Behind {
-    /// Cuts the farther arc, where it is not cut yet; what a contour does that crosses it there is
-    /// not all that changes.
+    /// Cuts the farther arc, where it is not cut yet. More changes there than the crossing contour
+    /// determines.
     fn cut(
         self,
         contour_arc: &mut ContourArc<'_>,
@@ -154,12 +154,14 @@ impl Behind {
 type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
-    /// The parameter on its arc; where the image turns back on itself counts as an end.
+    /// Settles a parameter on its arc. A point where the image turns back on itself counts as an
+    /// end.
     fn settle(&self, contour_arc: &ContourArc<'_>, t: f64) -> Option<Settled> {
         let near = IMAGE_TOLERANCE * self.scene.resolution;
         let settled = settle(contour_arc, t, near)?;
         if !contour_arc.turns.is_empty() {
-            // The image stands still at a turn: there little of the image is much of the curve.
+            // The image has zero speed at a turning point: a short piece of the image is a long
+            // piece of the curve.
             let p = contour_arc.curve.point(settled.t);
             if let Some(t) = self.stop_next_to(contour_arc, settled.t, &p, near) {
                 return Some(Settled { t, at_end: true });
@@ -168,8 +170,8 @@ impl Search<'_, '_, '_, '_> {
         Some(settled)
     }
 
-    /// The turn or end of an arc that is straight on from `t` and in the image no farther than
-    /// `near` from `q`.
+    /// The turning point or end of an arc that its image reaches from `t` in a straight line and
+    /// that lies within `near` of `q` in the image.
     fn stop_next_to(
         &self,
         contour_arc: &ContourArc<'_>,
@@ -189,14 +191,14 @@ impl Search<'_, '_, '_, '_> {
         })
     }
 
-    /// How far two points are apart in the image, as a distance in space.
+    /// The distance of two points in the image, as a distance in space.
     fn apart(&self, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
         let projection = self.scene.projection;
         let (x, y) = (flat_of(projection, p), flat_of(projection, q));
         (x[0] - y[0]).hypot(x[1] - y[1]) * projection.scale(p)
     }
 
-    /// Whether the image between two parameters is straight to within the resolution.
+    /// Whether the image between two parameters is straight within the resolution.
     fn straight(&self, contour_arc: &ContourArc<'_>, from: f64, to: f64) -> bool {
         if let Image::Line { .. } = contour_arc.image {
             return true;
@@ -207,10 +209,10 @@ impl Search<'_, '_, '_, '_> {
             .is_at_most(IMAGE_TOLERANCE * self.scene.resolution)
     }
 
-    /// Whether a crossing is that at a junction of both arcs: their images may touch there, as
-    /// a limb's and an edge's do where the limb ends on the edge, and rounding moves such a root a
-    /// long way. Up to the junction both images are straight to within the resolution, so nothing
-    /// tells them from each other.
+    /// Whether a crossing is the common junction of both arcs. Their images may be tangent there,
+    /// as those of a limb and of the edge on which it ends, and rounding moves such a root a long
+    /// way. Between the root and the junction both images are straight within the resolution, so
+    /// they coincide.
     fn at_shared(&self, a: &ContourArc<'_>, t: f64, b: &ContourArc<'_>, s: f64) -> bool {
         a.junctions().any(|(id, from)| {
             b.junctions()
@@ -252,8 +254,8 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Contours of faces that touch meet in space: which is in front may change, and what hides
-    /// them is told by neither.
+    /// Contours of faces that touch intersect in space. The front one may change there, and neither
+    /// contour determines what hides them.
     fn meeting(&mut self, both: [At<'_, '_>; 2], p: &Point3<f64>) {
         let junction = self
             .junctions
@@ -274,7 +276,8 @@ impl Search<'_, '_, '_, '_> {
         }));
     }
 
-    /// The turns of an arc's image that touch another contour, where their images do not cross.
+    /// Handles turning points of an arc's image that touch another contour without a crossing of
+    /// the images.
     fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
         let near = IMAGE_TOLERANCE * self.scene.resolution;
         for &t in &a.turns {
@@ -289,7 +292,7 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Another contour passes the end of an arc that is at a parameter.
+    /// Marks the end of an arc at a parameter as ambiguous, because another contour passes it.
     fn mark_ambiguous(&mut self, contour_arc: &ContourArc<'_>, at: Settled) {
         if !at.at_end {
             return;
@@ -307,9 +310,9 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Notes the junctions of `far` that `near` passes before in the image, be it by a touch that is
-    /// no crossing.
-    fn crowd_passed(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
+    /// Marks the junctions of `far` that `near` passes in front of in the image, even if it only
+    /// touches there.
+    fn mark_passed_ambiguous(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
         for (id, t) in far.junctions() {
             let known = passes_once(near, id) || self.junctions.is_ambiguous(id);
@@ -330,8 +333,8 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Notes where `far` passes behind the junctions of `near` in the image: contours that only
-    /// touch it there end there, or begin to be hidden, so that it may enter what lies between them.
+    /// Records where `far` passes behind the junctions of `near` in the image. Contours that only
+    /// touch it there end there or become hidden, so it may pass between their surfaces.
     fn pass_behind(&mut self, near: &ContourArc<'_>, (contour_arc, far): (u32, &ContourArc<'_>)) {
         for (id, s) in near.junctions() {
             if !far.hull.contains(self.junctions.image(id)) || passes_once(far, id) {
@@ -346,7 +349,7 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// The same for one junction at a point of `near`, and one parameter of `far` there.
+    /// The passage behind one junction, at a point of `near` and a parameter of `far`.
     fn behind_at(
         &self,
         near: &ContourArc<'_>,
@@ -363,7 +366,7 @@ impl Search<'_, '_, '_, '_> {
         if ahead.is_at_most(margin) || self.apart(&p, q).is_beyond(margin) {
             return None;
         }
-        // A cusp's own contour falls on it in the image a long way.
+        // A cusp's own contour overlaps itself in the image over a long way.
         let own = |(other, from): (u32, f64)| {
             other == id && self.straight(far, nearest_turn(far, from, t), t)
         };
@@ -393,14 +396,14 @@ impl Search<'_, '_, '_, '_> {
         !contour_arc.faces.iter().any(hides)
     }
 
-    /// Another contour falls on an arc.
+    /// Marks all junctions of an arc as ambiguous, because another contour overlaps it.
     fn mark_all_ambiguous(&mut self, contour_arc: &ContourArc<'_>) {
         for (id, _) in contour_arc.junctions() {
             self.junctions.mark_ambiguous(id);
         }
     }
 
-    /// The nearer arc splits the farther.
+    /// Splits the farther arc at a T-junction.
     fn junction(
         &mut self,
         (_, near, s, q): (u32, &ContourArc<'_>, Settled, Point3<f64>),
@@ -415,7 +418,7 @@ impl Search<'_, '_, '_, '_> {
         } else {
             let along = far.curve.tangent(t.t);
             match self.hidden_by(near, s.t, &q, &along, v) {
-                // Faces turned away change nothing, and what is not seen has no junction.
+                // Faces turned away change nothing, and an invisible contour has no junction.
                 Some(Hidden {
                     entered: None,
                     left: None,
@@ -447,8 +450,8 @@ impl Search<'_, '_, '_, '_> {
         self.splits.push((i, split));
     }
 
-    /// Which face begins and which ceases to hide what passes behind `near` at `q` in the
-    /// direction `u`; none where that is not clear, or more than one face does.
+    /// The faces that begin and cease to hide what passes behind `near` at `q` in the direction
+    /// `u`; none where that is ambiguous, or more than one face does.
     fn hidden_by(
         &self,
         near: &ContourArc<'_>,
@@ -483,8 +486,8 @@ impl Search<'_, '_, '_, '_> {
         })
     }
 
-    /// The side of a contour on which a face of it hides what is behind: the sign of det(t, ·, v),
-    /// zero for a face turned away, none where it is not clear.
+    /// The side of a contour on which one of its faces hides what is behind: the sign of det(t, ·,
+    /// v), zero for a face turned away, none where it is ambiguous.
     fn image_side(
         &self,
         near: &ContourArc<'_>,
@@ -506,7 +509,7 @@ impl Search<'_, '_, '_, '_> {
         }
         let facing = n.dot(v);
         if facing.is_within(flat) {
-            // Edge-on planes hide nothing; a limb that runs along the edge is not clear.
+            // Edge-on planes hide nothing; a limb that runs along the edge is ambiguous.
             return self.edge_on_plane(face).then_some(0.0);
         }
         let hides = facing.is_above_zero();
@@ -520,36 +523,37 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Splits `a` where `b`, which falls on it in the image, begins and ends.
+    /// Splits `a` where `b`, which overlaps it in the image, begins and ends.
     fn overlap(&mut self, (i, a): (u32, &ContourArc<'_>), (_, b): (u32, &ContourArc<'_>)) {
         if b.closed && b.turns.is_empty() {
             return;
         }
         for s in b.turns.iter().copied().chain(b.range) {
             let q = b.curve.point(s);
-            // In a symmetric view many ends fall on one point.
+            // In a symmetric view many ends coincide.
             let h = self.scene.projection.homogeneous(&q);
-            let asked = &mut self.asked[i as usize];
+            let processed = &mut self.processed[i as usize];
             let at = [h.x / h.z, h.y / h.z];
             let near = self.scene.resolution * h.z.recip();
-            if asked
+            if processed
                 .iter()
                 .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]).is_within(near))
             {
                 continue;
             }
-            asked.push(at);
+            processed.push(at);
             let mut met = Vec::new();
             parameters_at(a, &q, self.scene, &mut |t| met.push(t));
             for t in met {
                 let Some(t) = self.settle(a, t) else { continue };
                 let p = a.curve.point(t.t);
-                // Where a curve without a closed form is not met, its nearest point is no end.
+                // Where a curve without a closed form is not reached, its nearest point is no end.
                 let apart = self.apart(&p, &q);
                 if t.at_end || apart.is_beyond(4.0 * IMAGE_TOLERANCE * self.scene.resolution) {
                     continue;
                 }
-                // Next to a turn or an end, where no stretch has a direction, that is meant.
+                // Near a turning point or an end, where no monotone arc has a direction, that point
+                // is meant.
                 let nearest = apart.max(IMAGE_TOLERANCE * self.scene.resolution);
                 if self.stop_next_to(a, t.t, &q, nearest).is_some() {
                     continue;

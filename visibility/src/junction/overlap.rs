@@ -1,8 +1,8 @@
-//! Stretches of two curves whose images fall on one another, joined to runs.
+//! Overlaps: pieces of two curves whose images coincide, joined to runs.
 //!
-//! Where curves touch, or run into one point, several stretches of either may be within the
-//! resolution of each other. Which of the two lies on which side is plain at the ends of the whole
-//! run only: there the two cross if they have changed sides, once.
+//! Near a tangency or a common point, several pieces of both curves may lie within the resolution
+//! of each other. Only at the ends of the whole run is it unambiguous which curve lies on which
+//! side. The two cross, once, if they have changed sides there.
 
 use crate::image_curve::monotone_arc::dot2;
 use crate::junction::intersect_general::Graphs;
@@ -11,7 +11,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::predicates::Compare;
 
-/// A stretch of two curves over which their images fall on one another.
+/// A piece of two curves over which their images coincide.
 pub struct Shared<'x> {
     graphs: Graphs<'x>,
     /// The range of the second curve's parameter.
@@ -20,12 +20,12 @@ pub struct Shared<'x> {
     at: [f64; 2],
     /// The ends of both curves.
     ends: [[Point3<f64>; 2]; 2],
-    /// How long the image is.
+    /// The length of the image.
     length: f64,
 }
 
 impl<'x> Shared<'x> {
-    /// The stretch of the second curve over a range, and what the first has in common with it.
+    /// The piece over a range of the second curve, with the corresponding range of the first.
     pub fn new(graphs: Graphs<'x>, on: [f64; 2]) -> Self {
         let at = on.map(|s| graphs.gap(s).t);
         let [from, to] = [0, 1].map(|k| graphs.points(at[k], on[k]));
@@ -38,7 +38,7 @@ impl<'x> Shared<'x> {
         }
     }
 
-    /// Whether both curves go on, the same way, where another stretch ends.
+    /// Whether both curves continue in the same direction where another piece ends.
     fn follows(&self, before: &Self, near: f64) -> bool {
         let [e, f] = [self, before].map(|x| x.graphs.direction());
         let meets = |k: usize| (self.ends[k][0] - before.ends[k][1]).norm().is_within(near);
@@ -58,7 +58,7 @@ impl<'x> Shared<'x> {
         })
     }
 
-    /// Whether both ranges go on in the other's.
+    /// Whether both ranges continue in those of another piece.
     fn touches(&self, other: &Self, near: f64) -> bool {
         (0..2).all(|k| {
             let (these, those) = (self.ends[k], other.ends[k]);
@@ -68,7 +68,7 @@ impl<'x> Shared<'x> {
     }
 }
 
-/// Stretches each of which goes on where the one before ends.
+/// Consecutive pieces, each of which continues where the previous one ends.
 struct Run<'x>(Vec<Shared<'x>>);
 
 impl<'x> Run<'x> {
@@ -87,7 +87,7 @@ impl<'x> Run<'x> {
         scaled.sum::<f64>().is_at_most(short)
     }
 
-    /// Where the two curves meet in the image: their parameters there.
+    /// The contact of the two curves in the image: their parameters there.
     fn contact(&self, resolution: f64) -> Option<(f64, f64)> {
         let [(first, lo), (last, hi)] = self.ends()?;
         let (a, b) = (first.graphs.gap(lo), last.graphs.gap(hi));
@@ -95,13 +95,13 @@ impl<'x> Run<'x> {
             let of = self.change(a.v, |x, s| Some(x.graphs.gap(s).v))?;
             return Some(of.graphs.crossing(of.on, a.v));
         }
-        // Where one of the curves ends nothing is next to the other any more.
+        // Where one of the curves ends, the other has no counterpart.
         for (of, s, gap) in [(first, lo, &a), (last, hi, &b)] {
             if of.graphs.ends(gap.t, s) && gap.v.is_within(resolution) {
                 return Some((gap.t, s));
             }
         }
-        // They only touch, but change places in space.
+        // They only touch, but change their order in depth.
         let ahead = |x: &Shared<'_>, s: f64| x.graphs.ahead(s);
         let (from, to) = (ahead(first, lo)?, ahead(last, hi)?);
         if from.is_below_zero() == to.is_below_zero() {
@@ -112,7 +112,8 @@ impl<'x> Run<'x> {
         Some((of.graphs.gap(s).t, s))
     }
 
-    /// The stretch by whose end `value`, which is `from` where the run begins, has changed its sign.
+    /// The first piece at whose end `value`, which is `from` at the beginning of the run, has
+    /// changed its sign.
     fn change(
         &self,
         from: f64,
@@ -136,18 +137,18 @@ impl<'x> Run<'x> {
     }
 }
 
-/// All that the images of two curves share.
+/// All overlaps of the images of two curves.
 pub struct Runs<'x> {
     all: Vec<Run<'x>>,
-    /// How near ends are that are one.
+    /// The distance within which ends are equal.
     near: f64,
-    /// What is no longer may as well be a crossing or a touch.
+    /// The length up to which a run may be a crossing or a tangency.
     short: f64,
 }
 
 impl<'x> Runs<'x> {
-    /// Joins stretches; `near` is how far ends may be apart that are one, and what is no longer than
-    /// `short` may as well be a crossing or a touch.
+    /// Joins pieces. `near` is the distance within which ends are equal; a run no longer than
+    /// `short` may be a crossing or a tangency.
     pub fn new(mut stretches: Vec<Shared<'x>>, near: f64, short: f64) -> Self {
         stretches.sort_by(|x, y| x.on[0].total_cmp(&y.on[0]));
         let mut all: Vec<Run<'x>> = Vec::new();
@@ -158,7 +159,7 @@ impl<'x> Runs<'x> {
                 None => all.push(Run(vec![next])),
             }
         }
-        // Past the end of a closed curve they go on at its beginning.
+        // Past the end of a closed curve runs continue at its beginning.
         let joint = |all: &[Run<'_>]| {
             let follows = |i: usize, j: usize| {
                 let (last, first) = (all[i].0.last(), all[j].0.first());
@@ -175,7 +176,7 @@ impl<'x> Runs<'x> {
         Self { all, near, short }
     }
 
-    /// How long the images are together.
+    /// The length over which the images coincide.
     pub fn length(&self) -> f64 {
         let long = self.all.iter().filter(|run| !run.is_short(self.short));
         long.map(Run::length).sum()
@@ -188,11 +189,11 @@ impl<'x> Runs<'x> {
             .filter_map(move |run| run.contact(resolution))
     }
 
-    /// Leaves out what are no crossings of curves that fall on one another: where they only meet at
-    /// an end.
+    /// Removes roots of overlapping curves that are no crossings: those where they only share an
+    /// end.
     pub fn leave_out(self, curves: [&Curve; 2], roots: &mut Vec<(f64, f64)>) {
         let Self { all, near, short } = self;
-        // Short ones go on from the long ones, one after the other.
+        // Short runs are joined to the long ones, one after the other.
         let (mut short, mut long): (Vec<Run<'_>>, Vec<Run<'_>>) =
             all.into_iter().partition(|run| run.is_short(short));
         let mut next = 0;

@@ -15,8 +15,8 @@ pub struct Settled {
     pub at_end: bool,
 }
 
-/// The parameter as one of the arc, or at its end where it is no further than `near` beyond; none
-/// where it is.
+/// Settles a parameter in the range of an arc, or at its end if it lies at most `near` beyond; none
+/// if it lies farther.
 pub fn settle(contour_arc: &ContourArc<'_>, t: f64, near: f64) -> Option<Settled> {
     let [lo, hi] = contour_arc.range;
     let t = match contour_arc.curve.period() {
@@ -53,8 +53,8 @@ pub fn nearest_turn(contour_arc: &ContourArc<'_>, from: f64, t: f64) -> f64 {
     }
 }
 
-/// Splits the arcs that meet where the boundary touches itself: which is in front may change
-/// there, also for those that fall on one another in the image.
+/// Splits the arcs at the points where the boundary touches itself. The front arc may change there,
+/// also for arcs that overlap in the image.
 pub fn split_at_touches(
     contour_arcs: &mut [ContourArc<'_>],
     scene: &Scene<'_>,

@@ -1,7 +1,8 @@
-//! What is seen along a line of sight: the face nearest to the eye, and whether one hides a point.
+//! The first hit along a line of sight: the face nearest to the eye, and whether a face hides a
+//! point.
 //!
-//! Only what decides is placed in its face: where a line crosses surfaces costs less to tell than
-//! whether it does so within the faces.
+//! Only the crossings that decide are located in their faces, because intersecting a surface costs
+//! less than locating a point in a face.
 
 use crate::ray_casting::{OriginIncidence, SightLine};
 use crate::scene::Scene;
@@ -19,7 +20,7 @@ struct Crossing {
 }
 
 impl Scene<'_> {
-    /// The face that is seen at an image point, and where on it.
+    /// The face that is visible at an image point, and the point of it.
     pub fn nearest(&self, image: &Point2<f64>) -> Option<(FaceId, Point3<f64>)> {
         let (eye, into) = self.projection.line_of_sight(image);
         let part = self.bounds();
@@ -28,18 +29,18 @@ impl Scene<'_> {
             return None;
         }
         let ray = self.ray(&(eye + into * beyond));
-        let mut met = self.crossings(&ray, &|_| OriginIncidence::No);
-        // The nearest to the eye first, so that the others need not be placed.
-        met.sort_by(|a, b| b.at.total_cmp(&a.at));
-        met.iter().find_map(|crossing| {
+        let mut crossings = self.crossings(&ray, &|_| OriginIncidence::No);
+        // The nearest to the eye first, so that the others need not be located.
+        crossings.sort_by(|a, b| b.at.total_cmp(&a.at));
+        crossings.iter().find_map(|crossing| {
             let p = ray.origin + ray.towards * crossing.at;
             let seen = self.locator.place(crossing.face, &p) != PointLocation::Outside;
             seen.then_some((crossing.face, p))
         })
     }
 
-    /// Whether a face lies between a point and the eye, with what `own` says about those through it: what
-    /// does is left by the line of sight through a face turned towards the eye.
+    /// Whether a face lies between a point and the eye. `own` gives the incidence of faces through
+    /// the point. The line of sight leaves an occluding face through its front.
     pub fn is_hidden(&self, p: &Point3<f64>, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
         let ray = self.ray(p);
         self.crossings(&ray, own).iter().any(|crossing| {
@@ -50,23 +51,24 @@ impl Scene<'_> {
         })
     }
 
-    /// Where a line of sight crosses the surfaces of faces whose boxes it passes, within them or not.
+    /// The crossings of a line of sight with the surfaces of faces whose boxes it intersects,
+    /// inside the faces or not.
     fn crossings(
         &self,
         ray: &SightLine,
         own: &impl Fn(FaceId) -> OriginIncidence,
     ) -> Vec<Crossing> {
-        let mut met = Vec::new();
+        let mut crossings = Vec::new();
         for face in self.passed(ray) {
             let own = own(face);
             let least = self.least(own);
             let found = self.meetings(ray, self.brep.surface(face), own);
             for &(at, touches) in &found.at[..found.count] {
                 if at.is_beyond(least) && at.is_short_of(ray.length) {
-                    met.push(Crossing { at, touches, face });
+                    crossings.push(Crossing { at, touches, face });
                 }
             }
         }
-        met
+        crossings
     }
 }

@@ -1,4 +1,4 @@
-//! Where lines of sight meet whole surfaces.
+//! Intersections of lines of sight with whole surfaces.
 
 use crate::ray_casting::{OriginIncidence, SightLine};
 use crate::scene::Scene;
@@ -11,7 +11,8 @@ use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_kernel::number::roots::{RootKind, Roots, isolate};
 
-/// Up to four meetings of a line and a surface: distance, and whether it only touches.
+/// Up to four intersections of a line and a surface: the distance, and whether the line only
+/// touches.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Meetings {
     pub(crate) at: [(f64, bool); 4],
@@ -28,7 +29,8 @@ impl Meetings {
 }
 
 impl Scene<'_> {
-    /// Where a line of sight meets the surface of a face, less what `own` says.
+    /// The intersections of a line of sight with the surface of a face, without the root at the
+    /// origin that `own` states.
     pub(crate) fn meetings(
         &self,
         ray: &SightLine,
@@ -56,7 +58,7 @@ impl Scene<'_> {
                 let c = (q.norm() - s.radius) * (q.norm() + s.radius);
                 self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
             }
-            // Through the apex the line has a double root wherever it comes from.
+            // A line through the apex has a double root, whatever its direction.
             Surface::Cone(_) if own == OriginIncidence::No && self.through_apex(&q, &w) => {
                 found.push(-q.dot(&w), true);
             }
@@ -80,12 +82,12 @@ impl Scene<'_> {
         found
     }
 
-    /// Whether a line passes the origin of its frame.
+    /// Whether a line passes through the origin of its frame.
     fn through_apex(&self, q: &Vector3<f64>, w: &Vector3<f64>) -> bool {
         (q - w * q.dot(w)).norm().is_within(4.0 * self.resolution)
     }
 
-    /// The roots of a s² + 2 b s + c; `gradient` is what turns the value into a distance.
+    /// The roots of a s² + 2 b s + c; `gradient` converts the value into a distance.
     fn quadric(
         &self,
         [a, b, c]: [f64; 3],
@@ -93,7 +95,7 @@ impl Scene<'_> {
         gradient: impl Fn(f64) -> f64,
         found: &mut Meetings,
     ) {
-        // Along a ruling the line stays on the surface, or never meets it.
+        // A line along a ruling stays on the surface, or never intersects it.
         let flat = a.is_within(ROUNDING);
         match own {
             OriginIncidence::Tangent => {}
@@ -132,7 +134,7 @@ impl Scene<'_> {
         length: f64,
         found: &mut Meetings,
     ) {
-        // Beyond the tube's sphere there is nothing; the origin may be far away.
+        // The torus lies inside this sphere; the origin may be far away.
         let reach = s.major + s.minor + 4.0 * self.resolution;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();

@@ -1,8 +1,8 @@
-//! Lines of sight against the boundary: which faces lie between a point and the eye.
+//! Ray casting along lines of sight: which faces lie between a point and the eye.
 //!
 //! A line of sight runs from the point towards the eye: P + s v, s > 0. A contour's own faces pass
-//! through P, so there the root s = 0 is divided out (twice where the line is tangent, on a limb),
-//! and never has to be distinguished from zero.
+//! through P. Their root s = 0 is divided out (twice where the line is tangent, on a limb), so it
+//! never has to be distinguished from zero.
 
 pub(crate) mod first_hit;
 mod intersections;
@@ -29,7 +29,7 @@ pub struct SightLine {
     pub length: f64,
 }
 
-/// How a line of sight meets a surface through its origin.
+/// How a line of sight intersects a surface at its origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OriginIncidence {
     /// The origin is not known to be on the surface.
@@ -47,7 +47,8 @@ pub struct SightHit {
     pub at: f64,
     /// The face.
     pub face: FaceId,
-    /// Whether the face is turned towards the eye; so is one that is touched along its limb.
+    /// Whether the face is turned towards the eye. A face touched along its limb counts as turned
+    /// towards it.
     pub front: bool,
     /// Whether the line passes through the inside of the face, neither along its limb nor on its
     /// boundary.
@@ -59,21 +60,21 @@ pub struct SightHit {
 pub enum FaceQuery {
     /// All of them.
     All,
-    /// Those turned towards the eye, and of the others those met on their boundary only: whether
-    /// the line passes through the inside of a face turned away does not count. Also those that
-    /// touch the origin, as not plain.
+    /// Faces turned towards the eye, and faces turned away only where the line intersects their
+    /// boundary: whether it passes through the inside of a face turned away does not count. Faces
+    /// that touch the origin are reported, too, as ambiguous.
     Hiding,
 }
 
-/// What a line of sight met.
+/// The faces that a line of sight intersects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Occluders {
-    /// How many faces turned towards the eye.
+    /// The number of faces turned towards the eye.
     pub qi: u32,
-    /// Those nearest to the eye, the nearest first, as far as their order is known: at least one
-    /// if there are any.
+    /// The faces nearest to the eye, the nearest first, as far as their order is known; at least
+    /// one if there are any.
     pub order: Vec<FaceId>,
-    /// Whether all were met clearly.
+    /// Whether all intersections are unambiguous.
     pub unambiguous: bool,
 }
 
@@ -88,7 +89,8 @@ impl Occluders {
         self.order.len() as u32 == self.qi
     }
 
-    /// The same with these faces between all others and the point, the nearest to the eye first.
+    /// The occluders with these faces added between all others and the point, the nearest to the
+    /// eye first.
     pub fn before(&self, faces: &[FaceId]) -> Self {
         let mut count = self.clone();
         if count.is_whole() {
@@ -98,8 +100,8 @@ impl Occluders {
         count
     }
 
-    /// The same without these faces, which lie between all others and the point; none if they do
-    /// not.
+    /// The occluders without these faces, which lie between all others and the point; none if they
+    /// do not.
     pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
         let mut count = self.clone();
         count.qi = count.qi.checked_sub(faces.len() as u32)?;
@@ -112,21 +114,22 @@ impl Occluders {
     }
 }
 
-/// A face turned towards the eye, and how far it is.
+/// A face turned towards the eye, and its distance along the line of sight.
 #[derive(Clone, Copy, Debug)]
 struct Layer {
     at: f64,
     face: FaceId,
 }
 
-/// How far aside of a contour its sides are looked at, in multiples of the resolution: beyond what
-/// counts as touching.
+/// The lateral distance from a contour at which its two sides are evaluated, in multiples of the
+/// resolution. It is greater than what counts as touching.
 const ASIDE: f64 = 64.0;
-/// How far apart on a line of sight faces that touch may be, in multiples of the resolution.
+/// The greatest distance along a line of sight between faces that touch, in multiples of the
+/// resolution.
 const TOUCHING: f64 = 4.0;
 
-/// The directions in which a curve seen along `towards` has its two sides in the image; all around
-/// where it is seen end-on.
+/// The directions towards the two sides of a curve in the image, seen along `towards`; directions
+/// all around where the curve is seen end-on.
 fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
     let across = along.cross(towards);
     let size = across.norm();
@@ -146,7 +149,7 @@ impl Scene<'_> {
     pub fn ray(&self, p: &Point3<f64>) -> SightLine {
         let (towards, away) = self.projection.towards_eye(p);
         let near = self.projection.near;
-        // What lies nearer than the near plane does not hide.
+        // Faces nearer than the near plane do not occlude.
         let rise = -towards.dot(&self.projection.axis());
         let to_near = (self.projection.depth(p) - near) / rise;
         let length = if near.is_finite() { to_near } else { away };
@@ -157,13 +160,14 @@ impl Scene<'_> {
         }
     }
 
-    /// The faces whose boxes a line of sight passes.
+    /// The faces whose boxes a line of sight intersects.
     pub(crate) fn passed(&self, ray: &SightLine) -> impl Iterator<Item = FaceId> {
         let leaves = self.tree.locate_with_selection_function(Pierced::new(ray));
         leaves.map(|leaf| leaf.data)
     }
 
-    /// What is this near to the origin of a line of sight passes through it.
+    /// Intersections within this distance from the origin of a line of sight count as at the
+    /// origin.
     pub(crate) fn least(&self, own: OriginIncidence) -> f64 {
         match own {
             OriginIncidence::No => 4.0 * self.resolution,
@@ -171,21 +175,21 @@ impl Scene<'_> {
         }
     }
 
-    /// The faces on a line of sight, with what `own` says about those through its origin; the
-    /// faces seen edge-on are passed over.
+    /// Reports the faces on a line of sight. `own` gives the incidence of faces through its origin.
+    /// Faces seen edge-on are skipped.
     pub fn hits(
         &self,
         ray: &SightLine,
-        asked: FaceQuery,
+        query: FaceQuery,
         own: &impl Fn(FaceId) -> OriginIncidence,
         report: &mut impl FnMut(SightHit),
     ) {
         for face in self.passed(ray) {
-            self.face_hits(ray, face, asked, own(face), report);
+            self.face_hits(ray, face, query, own(face), report);
         }
     }
 
-    /// Whether any face is met clearly on a line of sight.
+    /// Whether a line of sight has an unambiguous intersection with any face.
     pub fn is_blocked(&self, ray: &SightLine, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
         self.passed(ray).any(|face| {
             let mut met = false;
@@ -200,7 +204,7 @@ impl Scene<'_> {
         &self,
         ray: &SightLine,
         face: FaceId,
-        asked: FaceQuery,
+        query: FaceQuery,
         own: OriginIncidence,
         report: &mut impl FnMut(SightHit),
     ) {
@@ -209,8 +213,8 @@ impl Scene<'_> {
         let least = self.least(own);
         for &(s, touch) in &meetings.at[..meetings.count] {
             let p = ray.origin + ray.towards * s;
-            if asked == FaceQuery::Hiding && s.abs().is_short_of(least) {
-                // Touched by another face, it may be this one that hides what is next to it.
+            if query == FaceQuery::Hiding && s.abs().is_short_of(least) {
+                // Where another face touches this one, this one may hide points next to the origin.
                 if self.locator.place(face, &p) != PointLocation::Outside {
                     report(SightHit {
                         at: s,
@@ -226,7 +230,7 @@ impl Scene<'_> {
             }
             let front = touch || self.is_turned(face, &p, &ray.towards);
             let locator = self.locator.face(face);
-            let place = match asked {
+            let place = match query {
                 FaceQuery::Hiding if !front && !locator.on_boundary(&p) => continue,
                 FaceQuery::Hiding if !front => PointLocation::On,
                 _ => locator.place(&p),
@@ -249,7 +253,8 @@ impl Scene<'_> {
         facing.is_above_zero()
     }
 
-    /// Where the line of sight from `p` meets the whole surface of a face, before it.
+    /// Reports where the line of sight from `p` intersects the whole surface of a face, in front of
+    /// `p`.
     pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
         let ray = self.ray(p);
         let meetings = self.meetings(&ray, self.brep.surface(face), OriginIncidence::No);
@@ -261,10 +266,11 @@ impl Scene<'_> {
     }
 
     /// The quantitative invisibility of a point of a curve with the unit tangent `along`: the faces
-    /// turned towards the eye on the open line of sight; `own` tells the faces through the point.
+    /// turned towards the eye on the open line of sight. `own` gives the incidence of faces through
+    /// the point.
     ///
-    /// A face that is met on its boundary or along its limb hides what is on one side of the curve
-    /// in the image, or on both; the curve is as hidden as its more hidden side.
+    /// A face that is intersected on its boundary or along its limb hides one side of the curve in
+    /// the image, or both. The curve counts as hidden as its more hidden side.
     pub fn count(
         &self,
         p: &Point3<f64>,
@@ -272,12 +278,13 @@ impl Scene<'_> {
         own: &impl Fn(FaceId) -> OriginIncidence,
     ) -> Occluders {
         let ray = self.ray(p);
-        self.count_beside(&ray, &sides(&ray.towards, along), own)
+        self.count_at_sides(&ray, &sides(&ray.towards, along), own)
     }
 
-    /// The same for a point of an edge that is seen end-on, so that it has no two sides: as hidden as
-    /// it is on the side where it is hidden most. `inward` are directions into the material next to it,
-    /// where it lies behind the face in which it ends towards the eye, however sharp it is.
+    /// The quantitative invisibility of a point of an edge that is seen end-on and so has no two
+    /// sides: that of the most hidden direction around it. `inward` are directions into the
+    /// material next to the edge, where it lies behind the face in which it ends towards the eye,
+    /// however sharp it is.
     pub fn count_end_on(
         &self,
         p: &Point3<f64>,
@@ -287,10 +294,10 @@ impl Scene<'_> {
         let ray = self.ray(p);
         let mut around = sides(&ray.towards, &ray.towards);
         around.extend(inward);
-        self.count_beside(&ray, &around, own)
+        self.count_at_sides(&ray, &around, own)
     }
 
-    fn count_beside(
+    fn count_at_sides(
         &self,
         ray: &SightLine,
         sides: &[Vector3<f64>],
@@ -314,13 +321,13 @@ impl Scene<'_> {
         }
         let mut most: Vec<Layer> = Vec::new();
         for side in sides {
-            let mut covered = self.layers_beside(ray, &unclear, own, side);
-            covered.extend(self.kept_beside(ray, &fronts, own, side));
+            let mut covered = self.layers_at_side(ray, &unclear, own, side);
+            covered.extend(self.kept_at_side(ray, &fronts, own, side));
             if covered.len() > most.len() {
                 most = covered;
             }
         }
-        // What is met next to boundaries may be as near as the next: only the first is certain.
+        // Intersections next to boundaries may be equally near, so only the first is certain.
         let first = most.iter().max_by(|a, b| a.at.total_cmp(&b.at));
         Occluders {
             qi: most.len() as u32,
@@ -329,9 +336,9 @@ impl Scene<'_> {
         }
     }
 
-    /// Those of the faces that are met clearly which are still met just aside: next to an edge one
-    /// face of it may begin where the other one ends.
-    fn kept_beside(
+    /// Those of the unambiguously intersected faces that are also intersected on one side of the
+    /// line: at an edge one of its faces may begin where the other one ends.
+    fn kept_at_side(
         &self,
         ray: &SightLine,
         fronts: &[SightHit],
@@ -341,16 +348,16 @@ impl Scene<'_> {
         let kept = |hit: &&SightHit| {
             let mut met = false;
             let report = &mut |_, front| met |= front;
-            self.passed_beside(ray, hit, own(hit.face), side, report);
+            self.hits_at_side(ray, hit, own(hit.face), side, report);
             met
         };
         let layer = |&SightHit { at, face, .. }: &SightHit| Layer { at, face };
         fronts.iter().filter(kept).map(layer).collect()
     }
 
-    /// The faces turned towards the eye on the line of sight just aside, of those that the line of
-    /// sight itself does not meet clearly.
-    fn layers_beside(
+    /// The faces turned towards the eye on a line of sight displaced to one side, among those that
+    /// the line itself intersects ambiguously.
+    fn layers_at_side(
         &self,
         ray: &SightLine,
         unclear: &[SightHit],
@@ -360,28 +367,29 @@ impl Scene<'_> {
         let (mut layers, mut backs) = (Vec::new(), Vec::new());
         for hit in unclear.iter().filter(|hit| hit.front) {
             let face = hit.face;
-            self.passed_beside(ray, hit, own(face), side, &mut |at, front| match front {
+            self.hits_at_side(ray, hit, own(face), side, &mut |at, front| match front {
                 true => layers.push((Layer { at, face }, hit)),
                 false => backs.push((at, hit)),
             });
         }
-        // A wedge of material, or of nothing, next to an edge is as thick here as the way aside.
+        // The thickness of a wedge of material or of void next to an edge is about the lateral
+        // distance.
         let touched = |hit: &&SightHit| {
             let reach = 2.0 * ASIDE * self.resolution;
             layers.iter().any(|(l, _)| (l.at - hit.at).is_within(reach))
         };
         for hit in unclear.iter().filter(|hit| !hit.front).filter(touched) {
-            self.passed_beside(ray, hit, own(hit.face), side, &mut |at, front| {
+            self.hits_at_side(ray, hit, own(hit.face), side, &mut |at, front| {
                 if !front {
                     backs.push((at, hit));
                 }
             });
         }
-        // Faces that touch are no further apart here than the resolution: there is no gap to see.
+        // Faces that touch are within the resolution of each other here: there is no visible gap.
         for (back, behind) in backs {
             let touches = |(l, hit): &(Layer, &SightHit)| {
                 let near = (l.at - back).is_within(TOUCHING * self.resolution);
-                near && !self.meet_at_an_angle(ray, [hit, behind])
+                near && !self.diverge(ray, [hit, behind])
             };
             if let Some(i) = layers.iter().position(touches) {
                 layers.swap_remove(i);
@@ -390,10 +398,10 @@ impl Scene<'_> {
         layers.into_iter().map(|(layer, _)| layer).collect()
     }
 
-    /// Whether two faces go apart where a line of sight meets them: however narrow the wedge between
-    /// them is, they are not one. Those that touch within the resolution may do so at an angle of
-    /// its root.
-    fn meet_at_an_angle(&self, ray: &SightLine, hits: [&SightHit; 2]) -> bool {
+    /// Whether two faces diverge at their intersections with a line of sight: however narrow the
+    /// wedge between them is, they are not one. Faces that touch within the resolution may do so at
+    /// an angle of its square root.
+    fn diverge(&self, ray: &SightLine, hits: [&SightHit; 2]) -> bool {
         let normal = |hit: &SightHit| {
             let p = ray.origin + ray.towards * hit.at;
             self.brep.outward(hit.face, &p)
@@ -402,9 +410,10 @@ impl Scene<'_> {
         m.cross(&n).norm().is_beyond(ROUNDING.sqrt().sqrt())
     }
 
-    /// Where the line of sight just aside of a hit passes the same face, and whether from its
-    /// front, there and not where the line of sight itself meets it elsewhere.
-    fn passed_beside(
+    /// Reports where the line of sight displaced to one side of a hit intersects the same face, and
+    /// whether from its front. Intersections nearer to another one of the line of sight itself are
+    /// left out.
+    fn hits_at_side(
         &self,
         ray: &SightLine,
         hit: &SightHit,
@@ -413,11 +422,11 @@ impl Scene<'_> {
         report: &mut impl FnMut(f64, bool),
     ) {
         let surface = self.brep.surface(hit.face);
-        let beside = ray.origin + ray.towards * hit.at + side * (ASIDE * self.resolution);
-        let (towards, _) = self.projection.towards_eye(&beside);
+        let lateral = ray.origin + ray.towards * hit.at + side * (ASIDE * self.resolution);
+        let (towards, _) = self.projection.towards_eye(&lateral);
         let back = 2.0 * hit.at;
         let parallel = SightLine {
-            origin: beside - towards * back,
+            origin: lateral - towards * back,
             towards,
             length: f64::INFINITY,
         };
@@ -433,7 +442,7 @@ impl Scene<'_> {
         let found = self.meetings(&parallel, surface, OriginIncidence::No);
         for &(s, touch) in &found.at[..found.count] {
             let at = s - back + hit.at;
-            // Behind the point nothing hides it.
+            // Faces behind the point do not hide it.
             if at.is_at_most(0.0) || !known(at) {
                 continue;
             }
@@ -454,7 +463,7 @@ impl Scene<'_> {
         if !part.contains(&eye) {
             return false;
         }
-        // Directions without a common pattern, until one meets every face clearly.
+        // Irregularly distributed directions, until one has only unambiguous intersections.
         let mut votes = 0i32;
         for k in 0..16u32 {
             let a = f64::from(k) * 2.399_963_229_728_653 + 0.7;
@@ -469,7 +478,7 @@ impl Scene<'_> {
             self.hits(&ray, FaceQuery::All, &|_| OriginIncidence::No, &mut |hit| {
                 unambiguous &= hit.unambiguous;
                 if hit.at.is_short_of(nearest.0) {
-                    // A face turned towards where the line runs is left from inside.
+                    // A line that passes a face along its outward normal comes from inside.
                     nearest = (hit.at, hit.front);
                 }
             });

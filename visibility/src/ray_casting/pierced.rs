@@ -1,11 +1,11 @@
-//! The boxes of faces that a line of sight meets.
+//! The boxes of faces that a line of sight intersects.
 
 use super::SightLine;
 use crate::scene::face_box::FaceBox;
 use premio_kernel::number::predicates::Compare;
 use rstar::{AABB, RTreeObject, SelectionFunction};
 
-/// The boxes that a line of sight meets.
+/// Selects the boxes that a line of sight intersects.
 pub struct Pierced {
     origin: [f64; 3],
     inverse: [f64; 3],
@@ -13,7 +13,7 @@ pub struct Pierced {
 }
 
 impl Pierced {
-    /// The boxes that this line of sight meets.
+    /// The selection for a line of sight.
     pub fn new(ray: &SightLine) -> Self {
         Self {
             origin: ray.origin.into(),

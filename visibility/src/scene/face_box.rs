@@ -23,8 +23,8 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
     let hull = match brep.surface(face) {
         Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
         Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
-        // Every point of these lies on a segment between two points of the boundary; of a cone that
-        // holds its apex perhaps one of them is that.
+        // Every point of these surfaces lies on a segment between two points of the boundary. On a
+        // cone that contains its apex one of them may be the apex.
         surface => {
             let own = locator.face(face);
             let hull = own.boxes().iter().fold(Aabb::EMPTY, |a, b| a.hull(b));

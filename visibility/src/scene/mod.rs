@@ -1,4 +1,5 @@
-//! The part before the camera: its boundary, the projection, and where points lie in its faces.
+//! The scene: a part in front of a camera, with its boundary, the projection, and the location of
+//! points in its faces.
 
 pub(crate) mod face_box;
 pub(crate) mod tolerance;
@@ -14,19 +15,19 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 
-/// The boundary, before a camera.
+/// A boundary in front of a camera.
 #[derive(Debug)]
 pub struct Scene<'a> {
     /// The part.
     pub brep: &'a Brep,
     /// The camera.
     pub projection: &'a Projection,
-    /// Where points lie in faces.
+    /// The location of points in faces.
     pub locator: Locator<'a>,
     /// The resolution.
     pub resolution: f64,
-    /// The sine of the angle between parallel sight and a direction along which the whole part is no
-    /// longer in the image than the resolution.
+    /// The sine of the angle between parallel sight and a direction along which the image of the
+    /// whole part is no longer than the resolution.
     pub tilt: f64,
     pub(crate) tree: RTree<FaceBox>,
     bounds: Aabb,
@@ -38,7 +39,7 @@ fn hull(boxes: &[Aabb]) -> Aabb {
 }
 
 impl<'a> Scene<'a> {
-    /// The scene of a part seen by a camera; `resolution` is the resolution.
+    /// The scene of a part seen by a camera; `resolution` is that of the part.
     pub fn new(brep: &'a Brep, projection: &'a Projection, resolution: f64) -> Self {
         let locator = Locator::new(brep, resolution);
         let boxes: Vec<Aabb> = brep

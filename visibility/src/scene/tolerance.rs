@@ -1,6 +1,7 @@
-//! How far apart points may be that two computations give for one, in multiples of the resolution.
+//! The distances within which points from two computations are equal, in multiples of the
+//! resolution.
 //!
-//! A position comes out of a few more operations than the distances that the resolution was applied to.
+//! A position takes a few more operations than the distances that the resolution is applied to.
 
 /// Points in space.
 pub const SPACE_TOLERANCE: f64 = 16.0;

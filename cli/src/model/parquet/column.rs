@@ -6,7 +6,7 @@ use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Ty
 use parquet::file::writer::SerializedColumnWriter;
 use serde_json::Value;
 
-/// What the cells of a column hold, if they hold anything.
+/// The type of a column's cells, which may be null.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
     /// A text.
@@ -21,11 +21,11 @@ pub enum ColumnKind {
     Reals,
 }
 
-/// A column: its name, what it holds, and where that is in a row's JSON.
+/// A column: its name, its type, and the pointer of its value in a row's JSON.
 #[derive(Clone, Copy, Debug)]
 pub struct Column(pub &'static str, pub ColumnKind, pub &'static str);
 
-/// All columns; a row has values of those that its `record` is told by.
+/// All columns; a row has values of those that belong to its `record`.
 #[rustfmt::skip]
 pub const COLUMNS: &[Column] = &[
     Column("record", Text, "/record"),
@@ -61,7 +61,7 @@ pub const COLUMNS: &[Column] = &[
     Column("attributes_count", Whole, "/attributes/count"),
     Column("attributes_mean", Reals, "/attributes/mean"),
     Column("attributes_covariance", Reals, "/attributes/covariance"),
-    // Which features are found together.
+    // The co-detection of features.
     Column("parent", Whole, "/together/parent"),
     Column("information", Real, "/together/information"),
     Column("marginal", Reals, "/together/marginal"),
@@ -109,7 +109,7 @@ impl Column {
         match self.1 {
             Text => self.typed::<ByteArrayType>(rows, to, |v| Some(ByteArray::from(v.as_str()?))),
             Whole | Wholes => self.typed::<Int64Type>(rows, to, Value::as_i64),
-            // JSON has no number for what is not finite.
+            // JSON has no numbers that are not finite.
             Real | Reals => self.typed::<DoubleType>(rows, to, |v| match v {
                 Value::Null => Some(f64::NAN),
                 v => v.as_f64(),
@@ -139,13 +139,14 @@ impl Column {
     }
 }
 
-/// The values of a column, with the levels by which Parquet knows what is null and where lists begin.
+/// The values of a column, with the levels by which Parquet encodes nulls and the beginnings of
+/// lists.
 #[derive(Default)]
 struct Cells<'r> {
     values: Vec<&'r Value>,
-    /// 0 is null; of lists 1 is empty, and 2 a value.
+    /// The definition level: 0 is null; of lists 1 is empty, and 2 a value.
     defined: Vec<i16>,
-    /// 0 begins a row, 1 goes on with its list.
+    /// The repetition level: 0 begins a row, 1 continues its list.
     repeated: Vec<i16>,
 }
 

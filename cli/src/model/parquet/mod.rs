@@ -1,7 +1,7 @@
-//! Models as Apache Parquet: one table, of which columns say what its rows are.
+//! Models as Apache Parquet: one table, whose columns identify its rows.
 //!
 //! Rows are features, aspects, the features of each aspect, and relations, in the order of the
-//! records; what a row has no value of is null. Which features are found together is in the
+//! records; values that a row does not have are null. The co-detection of features is in the
 //! features' rows. The first record is the file's metadata, under the name of the format.
 
 mod column;
@@ -22,10 +22,10 @@ use std::sync::Arc;
 /// Why there is no table.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// A record is no JSON.
+    /// A record cannot be written as JSON.
     #[error("a record of the model: {0}")]
     Record(#[from] serde_json::Error),
-    /// A value is not of its column.
+    /// A value does not have the type of its column.
     #[error("column `{column}` of the model: found {found}")]
     Cell {
         /// The column.
@@ -33,7 +33,7 @@ pub enum TableError {
         /// The value.
         found: Value,
     },
-    /// The table was not written.
+    /// The table could not be written.
     #[error("{0}")]
     Parquet(#[from] ParquetError),
 }
@@ -60,7 +60,7 @@ pub fn bytes(records: &[Record]) -> Result<Vec<u8>, TableError> {
     Ok(writer.into_inner()?)
 }
 
-/// The first record, and the rows that the others make.
+/// The first record, and the rows of the others.
 fn rows(records: &[Record]) -> Result<(Value, Vec<Value>), TableError> {
     let mut head = Value::Null;
     let mut rows = Vec::new();
@@ -92,7 +92,7 @@ fn rows(records: &[Record]) -> Result<(Value, Vec<Value>), TableError> {
     Ok((head, rows))
 }
 
-/// By feature: its node of the tree of which features are found together.
+/// By feature: its node of the co-detection tree.
 fn together(records: &[Record]) -> Result<HashMap<usize, Value>, TableError> {
     let trees = records.iter().filter_map(|record| match record {
         Record::Codetection(found) => Some(&found.tree),

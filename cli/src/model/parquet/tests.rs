@@ -1,4 +1,4 @@
-//! What is written is read back, and held against the JSON Lines of the same run.
+//! A written table is read back and compared with the JSON Lines of the same run.
 
 use super::column::{COLUMNS, ColumnKind};
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
@@ -31,24 +31,26 @@ fn table(path: &Path) -> (Value, Vec<Map<String, Value>>) {
     let head = serde_json::from_str(head.value.as_ref().unwrap()).unwrap();
     let cells = |row: ::parquet::record::Row| {
         let columns = row.into_columns().into_iter();
-        columns.map(|(name, field)| (name, told(&field))).collect()
+        columns
+            .map(|(name, field)| (name, value_of(&field)))
+            .collect()
     };
     let rows = reader.get_row_iter(None).unwrap();
     (head, rows.map(|row| cells(row.unwrap())).collect())
 }
 
-fn told(field: &Field) -> Value {
+fn value_of(field: &Field) -> Value {
     match field {
         Field::Null => Value::Null,
         Field::Long(n) => json!(n),
         Field::Double(x) => json!(x),
         Field::Str(text) => json!(text),
-        Field::ListInternal(list) => list.elements().iter().map(told).collect(),
+        Field::ListInternal(list) => list.elements().iter().map(value_of).collect(),
         other => panic!("found {other:?}"),
     }
 }
 
-/// The rows that the lines of a model should make, by the lines alone.
+/// The expected rows of a model, from its lines alone.
 fn expected(lines: &[Value]) -> Vec<Value> {
     let tree = lines.iter().find(|l| l["record"] == "codetection").unwrap();
     let mut rows = Vec::new();
@@ -80,7 +82,7 @@ fn expected(lines: &[Value]) -> Vec<Value> {
     rows
 }
 
-/// The values within a value that are no objects, by their keys; a list of lists as one list.
+/// The leaf values of a value, by their keys; a list of lists as one list.
 fn flat(value: &Value, pointer: &str, to: &mut Vec<(String, Value)>) {
     match value {
         Value::Null => {}
@@ -140,15 +142,15 @@ fn a_table_holds_what_the_lines_hold() {
     for (row, expected) in rows.iter().zip(&expected) {
         let mut values = Vec::new();
         flat(expected, "", &mut values);
-        // No value of the lines is without a column.
+        // Every value of the lines has a column.
         for (pointer, value) in &values {
             let column = COLUMNS.iter().find(|c| c.2 == pointer);
             let name = column.unwrap_or_else(|| panic!("no column of {pointer}")).0;
             assert_eq!(&row[name], value, "{name} of {expected}");
             used.insert(name);
         }
-        let told = row.values().filter(|v| !v.is_null()).count();
-        assert_eq!(told, values.len(), "{row:?}");
+        let value_of = row.values().filter(|v| !v.is_null()).count();
+        assert_eq!(value_of, values.len(), "{row:?}");
     }
     let of_lists = COLUMNS.iter().filter(|c| c.1 == ColumnKind::Reals);
     assert!(of_lists.clone().all(|c| used.contains(c.0)), "{used:?}");

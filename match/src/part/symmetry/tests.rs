@@ -1,4 +1,4 @@
-//! How many turns bring a part onto itself, by hand.
+//! The numbers of rotational symmetries, derived by hand.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::part::SoughtPart;
@@ -70,14 +70,15 @@ fn of_blocks() {
     // Two rims of a hole through the middle of the square sides.
     let hole = [cylinder(0.5, 9.0, [0.0; 3])];
     check(&less(&block([2.0, 2.0, 3.0]), &hole), 8, 1);
-    // And next to it.
+    // And off the middle.
     let hole = [cylinder(0.5, 9.0, [0.2, 0.1, 0.0])];
     check(&less(&block([2.0, 2.0, 3.0]), &hole), 1, 2);
     let hole = [cylinder(0.5, 9.0, [0.2, 0.0, 0.0])];
     check(&less(&block([2.0, 2.0, 3.0]), &hole), 2, 1);
 }
 
-/// Rows of holes: of nine the middle one, those at the corners and those between them are three kinds.
+/// Rows of nine holes have three kinds: the middle one, those at the corners and those between
+/// them.
 #[test]
 fn of_plates_with_holes() {
     let places = [-1.0, 0.0, 1.0];
@@ -88,14 +89,14 @@ fn of_plates_with_holes() {
     check(&less(&block([4.0, 4.0, 1.0]), none_in_one_corner), 2, 8);
 }
 
-/// A wedge's sides are all unlike but where the two that meet at the right angle are one length.
+/// A wedge has equal sides only where the two at the right angle have one length.
 #[test]
 fn of_wedges() {
     check(r#"{"prim": "wedge", "size": [1.0, 2.0, 3.0]}"#, 1, 0);
     check(r#"{"prim": "wedge", "size": [1.0, 3.0, 1.0]}"#, 2, 0);
 }
 
-/// Holes about an axis, of which the middle of the box is not where the axis is.
+/// Holes around an axis that is not the centre of the box.
 #[test]
 fn of_flanges() {
     let disc = cylinder(3.0, 1.0, [0.0; 3]);
@@ -109,7 +110,7 @@ fn of_flanges() {
     }
 }
 
-/// What is turned about an axis may be brought onto itself upside down.
+/// A part of revolution may be symmetric under a half turn across its axis.
 #[test]
 fn of_turned_parts() {
     let shaft = cylinder(1.0, 6.0, [0.0; 3]);
@@ -122,7 +123,7 @@ fn of_turned_parts() {
     check(&less(&shaft, &[across.to_owned()]), 4, 1);
 }
 
-/// One side is the other's but for the sense of a bulge: the edges alone do not tell.
+/// The sides differ only in the sense of a bulge: the edges alone do not distinguish them.
 #[test]
 fn of_a_bulge_and_a_hollow() {
     let ball = |z: f64| at(r#""sphere", "r": 1.0"#, [0.0, 0.0, z]);
@@ -132,22 +133,23 @@ fn of_a_bulge_and_a_hollow() {
     check(&less(&bulge, &[ball(-2.0)]), 4, 2);
 }
 
-/// A ball or a ring next to a part has no edge, and is a part of it all the same.
+/// A ball or a ring next to a block has no edge, and is a part of the solid all the same.
 #[test]
 fn of_what_has_no_edges() {
-    let aside = [at(r#""sphere", "r": 0.5"#, [0.0, 5.0, 0.0])];
-    check(&of("union", &block([2.0, 2.0, 3.0]), &aside), 2, 0);
+    let lateral = [at(r#""sphere", "r": 0.5"#, [0.0, 5.0, 0.0])];
+    check(&of("union", &block([2.0, 2.0, 3.0]), &lateral), 2, 0);
     let above = [at(r#""sphere", "r": 0.5"#, [0.0, 0.0, 5.0])];
     check(&of("union", &block([2.0, 2.0, 3.0]), &above), 4, 0);
     let ring = at(r#""torus", "R": 4.0, "r": 0.5"#, [0.0; 3]);
     check(&of("union", &block([2.0, 2.0, 3.0]), &[ring]), 8, 0);
     let shaft = cylinder(1.0, 4.0, [0.0; 3]);
     check(&of("union", &shaft, &above), 1, 2);
-    // No longer turned about its axis: no middle of an edge tells by how much.
-    check(&of("union", &shaft, &aside), 1, 2);
+    // It is no longer a part of revolution, and the centroid of no edge determines the rotation.
+    check(&of("union", &shaft, &lateral), 1, 2);
 }
 
-/// As large and as far away as it may be, and a hole by no more off the middle than is told.
+/// The largest and smallest units, and a hole that is off the middle by little more than the
+/// tolerance.
 #[test]
 fn of_any_unit() {
     for unit in [1e-6, 1e6] {

@@ -1,4 +1,4 @@
-//! Planted poses of a wire part, and edges that lie off its images by noise of a known deviation.
+//! Planted poses of a wire part, and edges with noise of a known standard deviation.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::*;
@@ -12,10 +12,10 @@ const CAMERA: Pinhole = Pinhole {
     skew: 1.5,
 };
 
-/// The deviation of edges, in pixels.
+/// The standard deviation of edges, in pixels.
 const SIGMA: f64 = 0.4;
 
-/// Numbers that are the same every time.
+/// Reproducible random numbers.
 struct Random(Bits);
 
 impl Random {
@@ -28,7 +28,7 @@ impl Random {
         lo + (hi - lo) * self.next()
     }
 
-    /// Of mean zero and deviation one (Box and Muller).
+    /// Of mean zero and standard deviation one (Box and Muller).
     fn normal(&mut self) -> f64 {
         let (a, b) = (1.0 - self.next(), self.next());
         (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
@@ -48,8 +48,8 @@ impl Random {
         )
     }
 
-    /// A pose five degrees and five hundredths of the distance from another.
-    fn beside(&mut self, pose: &Isometry3<f64>) -> Isometry3<f64> {
+    /// A pose that differs by five degrees and five hundredths of the distance.
+    fn perturbed(&mut self, pose: &Isometry3<f64>) -> Isometry3<f64> {
         let turn = self.direction() * 5.0f64.to_radians();
         let shift = self.direction() * (0.05 * pose.translation.vector.norm());
         moved(
@@ -87,7 +87,7 @@ fn wire() -> Vec<(Point3<f64>, Vector3<f64>)> {
     all
 }
 
-/// Edges next to the images of the wire in a pose.
+/// Noisy edges of the images of the wire at a pose.
 fn pulls(pose: &Isometry3<f64>, random: &mut Random, sigma: f64) -> Vec<PointToLine> {
     let pull = |(point, tangent): (Point3<f64>, Vector3<f64>)| {
         let at = CAMERA.project(&(pose * point));
@@ -104,24 +104,23 @@ fn pulls(pose: &Isometry3<f64>, random: &mut Random, sigma: f64) -> Vec<PointToL
     wire().into_iter().map(pull).collect()
 }
 
-/// The step from a pose to another: the turn in the camera's axes, and the move.
+/// The step from a pose to another: the rotation in the camera's axes, and the translation.
 fn step(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Vector6<f64> {
     let turn = (to.rotation * from.rotation.inverse()).scaled_axis();
     let shift = to.translation.vector - from.translation.vector;
     Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
 }
 
-/// The square of the error of a pose in its deviations: of chi-square's distribution with six degrees
-/// of freedom.
+/// The squared Mahalanobis error of a pose: chi-squared with six degrees of freedom.
 fn squared_error(planted: &Isometry3<f64>, refined: &Refined) -> f64 {
     let e = step(planted, &refined.pose);
     e.dot(&(refined.information * e)) / (SIGMA * SIGMA)
 }
 
-/// Chi-square of six degrees of freedom is greater once in ten million times.
+/// Chi-squared with six degrees of freedom exceeds this once in ten million times.
 const NEVER: f64 = 43.0;
 
-/// From coarse to fine, with so many rounds at each scale.
+/// Refines from coarse to fine, with a number of rounds at each scale.
 fn refined(
     start: &Isometry3<f64>,
     pulls: &[PointToLine],
@@ -142,24 +141,24 @@ fn what_has_no_noise_is_found_to_the_last_digits() {
     for _ in 0..100 {
         let planted = random.pose();
         let pulls = pulls(&planted, &mut random, 0.0);
-        let found = refined(&random.beside(&planted), &pulls, &[1000.0], 30);
+        let found = refined(&random.perturbed(&planted), &pulls, &[1000.0], 30);
         assert!(step(&planted, &found.pose).norm() < 1e-9);
     }
 }
 
 #[test]
-fn a_pose_that_is_away_comes_back() {
+fn a_perturbed_pose_is_recovered() {
     let mut random = Random(Bits::new(2));
     for _ in 0..100 {
         let planted = random.pose();
         let pulls = pulls(&planted, &mut random, SIGMA);
-        let found = refined(&random.beside(&planted), &pulls, &[1000.0], 30);
+        let found = refined(&random.perturbed(&planted), &pulls, &[1000.0], 30);
         assert!(squared_error(&planted, &found) < NEVER);
     }
 }
 
 #[test]
-fn a_pose_that_is_away_comes_back_though_a_fifth_is_wrong() {
+fn a_perturbed_pose_is_recovered_with_a_fifth_of_outliers() {
     let mut random = Random(Bits::new(3));
     for _ in 0..100 {
         let planted = random.pose();
@@ -169,7 +168,7 @@ fn a_pose_that_is_away_comes_back_though_a_fifth_is_wrong() {
                 pull.target += pull.normal * random.within(-60.0, 60.0);
             }
         }
-        let start = random.beside(&planted);
+        let start = random.perturbed(&planted);
         let found = refined(&start, &pulls, &[200.0, 50.0, 12.0, 12.0 * SIGMA], 20);
         assert!(squared_error(&planted, &found) < NEVER);
     }
@@ -188,8 +187,9 @@ fn errors_are_as_great_as_they_are_said_to_be() {
         let found = refined(&planted, &pulls, &[20.0 * SIGMA], 30);
         sum += squared_error(&planted, &found);
     }
-    // Chi-square of so many degrees of freedom, as good as normal: 99 of 100 lie within.
+    // Chi-squared with this many degrees of freedom is nearly normal: 99 of 100 values lie within
+    // the limit.
     let freedom = 6.0 * TRIALS as f64;
-    let aside = 2.576 * (2.0 * freedom).sqrt();
-    assert!((sum - freedom).abs() < aside, "{}", sum / TRIALS as f64);
+    let limit = 2.576 * (2.0 * freedom).sqrt();
+    assert!((sum - freedom).abs() < limit, "{}", sum / TRIALS as f64);
 }

@@ -1,5 +1,5 @@
-//! How many numbers of a shape are told, by hand: each by the logarithm of how much more carriers vary
-//! from thing to thing than from part to part.
+//! The number of shape parameters that a match determines, derived by hand. Each counts the
+//! logarithm of the ratio of a carrier's deviation from thing to thing and from part to part.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::*;
@@ -16,7 +16,7 @@ const CAMERA: Pinhole = Pinhole {
     skew: 0.0,
 };
 const SIZE: [usize; 2] = [2048, 2048];
-/// What a number of a shape tells that is known as well as can be.
+/// The evidence of one fully determined shape parameter.
 const NUMBER: f64 = 3.912;
 
 fn evaluated(text: &str) -> Evaluation {
@@ -45,8 +45,8 @@ fn turned(x: f64, y: f64) -> Isometry3<f64> {
     )
 }
 
-/// What the edges of one part at a pose tell, taken for those of another.
-fn told(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> ShapeEvidence {
+/// The evidence of the edges of one part at a pose, assigned to another part.
+fn evidence(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> ShapeEvidence {
     let learned = DetectabilityPrior::nothing();
     let [seen, taken] = [seen, taken].map(|e| SoughtPart::new(&e.brep, e.resolution, &learned));
     let [there, here] = [&seen, &taken].map(|p| arcs(p, &CAMERA, pose, SIZE).unwrap());
@@ -55,7 +55,7 @@ fn told(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> ShapeEv
         .iter()
         .zip(&there)
         .map(|(a, b)| {
-            // By share of its length, which is as near along an edge as is needed.
+            // The point at the same share of the length, which is close enough along an edge.
             let at = |k: usize| b.points[k * b.points.len() / a.points.len()].1.at;
             let weight = (2.0 + a.length / 24.0) / a.points.len() as f64;
             let pulls = a
@@ -74,17 +74,17 @@ fn told(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> ShapeEv
     let all: Vec<PointToLine> = features.iter().flat_map(|f| f.1.clone()).collect();
     let pose = refine(&CAMERA, pose, &all, 64.0, 20).unwrap().pose;
     let features = features.iter().map(|(s, p)| (*s, p.as_slice()));
-    ShapeEvidence::told_by(&taken, &CAMERA, &pose, features)
+    ShapeEvidence::from_edges(&taken, &CAMERA, &pose, features)
 }
 
-/// How large its unit is, is no number of a shape.
+/// The unit of length is no shape parameter.
 #[test]
-fn a_block_of_any_size_tells_as_much() {
+fn the_size_of_a_block_does_not_change_its_evidence() {
     for unit in [1e-9, 1.0, 1e9] {
         let block = block([2.0, 1.5, 1.0].map(|side| side * unit));
         let mut pose = turned(0.6, 0.7);
         pose.translation.vector *= unit;
-        let shape = told(&block, &block, &pose);
+        let shape = evidence(&block, &block, &pose);
         assert!(
             (shape.determined - 2.0 * NUMBER).abs() < 0.1,
             "{unit}: {shape:?}"
@@ -93,79 +93,81 @@ fn a_block_of_any_size_tells_as_much() {
     }
 }
 
-/// A sphere's limb is that of any sphere, at some distance.
+/// A sphere's limb is that of a sphere of any radius at some distance.
 #[test]
-fn a_limb_tells_nothing_of_a_sphere() {
+fn a_limb_does_not_determine_a_sphere() {
     let sphere = evaluated(r#"{"prim": "sphere", "r": 1.0}"#);
-    let shape = told(&sphere, &sphere, &turned(0.6, 0.7));
+    let shape = evidence(&sphere, &sphere, &turned(0.6, 0.7));
     assert!(shape.determined.abs() < 0.1 * NUMBER, "{shape:?}");
     assert!(shape.denied < 1e-6, "{shape:?}");
 }
 
-/// Six planes are six numbers, less three for where it is and one for how large: of its three sides
-/// two, by that to the third.
+/// Six planes have six parameters. The position takes three and the size one. Two remain: the
+/// ratios of the sides.
 #[test]
-fn three_faces_tell_two_numbers_of_a_block() {
+fn three_faces_determine_two_parameters_of_a_block() {
     let block = block([2.0, 1.5, 1.0]);
-    let shape = told(&block, &block, &turned(0.6, 0.7));
+    let shape = evidence(&block, &block, &turned(0.6, 0.7));
     assert!((shape.determined - 2.0 * NUMBER).abs() < 0.1, "{shape:?}");
     assert!(shape.denied < 1e-6, "{shape:?}");
     assert!(shape.relief > 0.25, "{shape:?}");
 }
 
-/// Of five planes one: how long it is by how wide.
+/// Of five planes one parameter remains: the ratio of length to width.
 #[test]
-fn a_face_tells_one_number_of_a_block() {
+fn a_face_determines_one_parameter_of_a_block() {
     let block = block([2.0, 1.5, 1.0]);
-    let shape = told(&block, &block, &turned(0.0, 0.0));
+    let shape = evidence(&block, &block, &turned(0.0, 0.0));
     assert!((shape.determined - NUMBER).abs() < 0.1, "{shape:?}");
     assert!(shape.relief < 0.01, "{shape:?}");
 }
 
-/// It is that of any cylinder, at some distance.
+/// The circle is that of a cylinder of any radius at some distance.
 #[test]
-fn a_circle_tells_nothing_of_a_cylinder() {
+fn a_circle_does_not_determine_a_cylinder() {
     let cylinder = evaluated(r#"{"prim": "cylinder", "r": 1.0, "h": 1.0}"#);
-    let shape = told(&cylinder, &cylinder, &turned(0.0, 0.0));
+    let shape = evidence(&cylinder, &cylinder, &turned(0.0, 0.0));
     assert!(shape.determined.abs() < 0.1 * NUMBER, "{shape:?}");
     assert!(shape.relief < 0.01, "{shape:?}");
 }
 
-/// A face with a hole in it: besides the block's own number where the hole is, by two, its radius, and by
-/// its far rim how thick the plate is.
+/// A face with a hole: besides the block's own parameter, the hole's position has two, its radius
+/// one, and its far rim gives the thickness of the plate.
 #[test]
-fn a_flat_figure_tells_as_much_as_it_has() {
+fn a_flat_figure_determines_its_own_parameters() {
     let plate = evaluated(
         r#"{"op": "difference", "children": [
             {"prim": "block", "size": [2.0, 1.5, 0.2], "transform": [{"translate": [-1.0, -0.75, 0.0]}]},
             {"prim": "cylinder", "r": 0.3, "h": 2.0, "transform": [{"translate": [0.3, 0.2, -1.0]}]}
         ]}"#,
     );
-    let shape = told(&plate, &plate, &turned(0.0, 0.0));
+    let shape = evidence(&plate, &plate, &turned(0.0, 0.0));
     assert!((shape.determined - 5.0 * NUMBER).abs() < 0.1, "{shape:?}");
 }
 
-/// Its edges deny a block that is longer by as much as things differ, and not by as much as parts do.
+/// The edges are evidence against a block that is longer by as much as things differ, and not
+/// against one that is longer by as much as parts differ.
 #[test]
-fn edges_of_another_block_deny_this_one() {
+fn edges_of_another_block_count_against_this_one() {
     let (pose, this) = (turned(0.6, 0.7), block([2.0, 1.5, 1.0]));
-    let alike = told(&block([2.005, 1.5, 1.0]), &this, &pose);
+    let alike = evidence(&block([2.005, 1.5, 1.0]), &this, &pose);
     assert!(
         alike.denied < 1.0 && alike.ratio() > 1.5 * NUMBER,
         "{alike:?}"
     );
-    let another = told(&block([2.3, 1.5, 1.0]), &this, &pose);
+    let another = evidence(&block([2.3, 1.5, 1.0]), &this, &pose);
     assert!(
         another.denied > 10.0 && another.ratio() < 0.0,
         "{another:?}"
     );
 }
 
-/// A block with a rod upon it has six planes, one at the rod's end, and the rod's own carrier. From a
-/// corner the block's edges are of all its six, outlines being of faces that are turned away, too; the
-/// rod's limbs and rims are of its two, and of the face that it stands on.
+/// A block with a rod on it has six planes, a plane at the rod's end, and the rod's cylinder. From
+/// a corner the block's visible edges belong to all six planes, because outlines also belong to
+/// faces turned away. The rod's limbs and rims belong to its two carriers and to the face that it
+/// stands on.
 #[test]
-fn carriers_are_counted_that_features_are_of() {
+fn carriers_of_visible_features_are_counted() {
     let part = evaluated(
         r#"{"op": "union", "children": [
             {"prim": "block", "size": [2.0, 1.5, 1.0], "transform": [{"translate": [-1.0, -0.75, -0.5]}]},

@@ -1,10 +1,10 @@
-//! What is wrong with a shard.
+//! Errors of shards.
 
 use std::fmt;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// What is wrong with a shard, and where.
+/// An error of a shard, with its position.
 ///
 /// # Examples
 ///

@@ -1,4 +1,4 @@
-//! The lines of a shard's file, of which no more is read than a limit.
+//! The lines of a shard's file, read up to a limit.
 
 use super::error::{ShardError, failed, not_read};
 use premio_text::{LineColumn, TextError};
@@ -7,7 +7,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A file of which no more is read than a limit.
+/// A file that is read up to a limit.
 #[derive(Debug)]
 struct LimitedFile {
     file: File,
@@ -32,7 +32,7 @@ impl Read for LimitedFile {
 pub(super) struct Lines {
     reader: BufReader<LimitedFile>,
     pub(super) path: PathBuf,
-    /// How many have been read.
+    /// The number of lines read.
     pub(super) count: usize,
 }
 
@@ -70,7 +70,7 @@ impl Lines {
         parse(line).map_err(|e| self.wrong(e.span.clone().unwrap_or(0..0), line, &e.to_string()))
     }
 
-    /// What is wrong with the line that was read last.
+    /// An error of the line that was read last.
     pub(super) fn wrong(&self, span: Range<usize>, line: &str, words: &str) -> ShardError {
         let LineColumn { column, .. } = LineColumn::new(line.as_bytes(), span.start);
         ShardError {

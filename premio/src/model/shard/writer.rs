@@ -16,13 +16,13 @@ use tempfile::NamedTempFile;
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct End {
-    /// How many lines are before it.
+    /// The number of lines before it.
     pub(super) lines: u64,
     /// SHA-256 of all bytes before it.
     pub(super) sha256: String,
 }
 
-/// A shard that is being written, next to its place.
+/// A shard being written to a temporary file next to the target.
 #[derive(Debug)]
 pub(crate) struct ShardWriter {
     out: BufWriter<NamedTempFile>,
@@ -32,7 +32,7 @@ pub(crate) struct ShardWriter {
 }
 
 impl ShardWriter {
-    /// A shard to be.
+    /// Starts a shard.
     pub(crate) fn new(path: &Path, head: &ShardHead) -> Result<Self, ShardError> {
         let path = files::target(path).map_err(|e| failed(path, &e))?;
         if files::is_no_file(&path) {
@@ -59,7 +59,7 @@ impl ShardWriter {
         written.map_err(|e| failed(&self.path, &e))
     }
 
-    /// Puts the shard in its place.
+    /// Renames the shard to its target.
     pub(crate) fn finish(mut self) -> Result<(), ShardError> {
         let end = End {
             lines: self.lines,

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use sha2::{Digest, Sha256};
 
-    /// The decoder gives the samples that it gave when the digests were taken.
+    /// The decoder returns the same samples as when the digests were recorded.
     #[test]
     fn samples_are_the_same_bytes() {
         for (bytes, channels, digest) in [

@@ -1,11 +1,11 @@
 //! Bits and Huffman codes in the data of a scan.
 
-/// So many bytes at a place.
+/// A word of bytes at a position.
 pub fn word<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// Why the next code is not read.
+/// Why the next code cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntropyError {
     /// The data end.
@@ -28,8 +28,8 @@ impl std::fmt::Debug for Huffman {
 }
 
 impl Huffman {
-    /// The code with so many symbols of each length from 1 (T.81, annex C); none if there are more
-    /// than such codes.
+    /// The code with a number of symbols of each length from 1 (T.81, annex C); none if there are
+    /// more than such codes.
     pub fn new(counts: &[u8; 16], symbols: &[u8]) -> Option<Self> {
         let mut codes = Vec::with_capacity(1 << 16);
         let mut left = symbols.iter();
@@ -48,9 +48,9 @@ impl Huffman {
 /// The bits of a scan's data, up to the next marker.
 pub struct Bits<'b> {
     bytes: &'b [u8],
-    /// Where the next byte is read.
+    /// The position of the next byte.
     at: usize,
-    /// The bits that are read and not taken, the last ones of the word.
+    /// The bits that are read and not yet used, in the low end of the word.
     held: u64,
     count: u32,
 }
@@ -66,14 +66,14 @@ impl<'b> Bits<'b> {
         }
     }
 
-    /// Where reading has come to in the file.
+    /// The current position in the file.
     pub fn at(&self) -> usize {
         self.at
     }
 
     fn next_byte(&mut self) -> Option<u8> {
         let (length, byte) = match self.bytes.get(self.at..)? {
-            // A zero behind says that it is no marker.
+            // A zero after it means that it is no marker.
             [0xff, 0, ..] => (2, 0xff),
             [0xff, ..] | [] => return None,
             [byte, ..] => (1, *byte),
@@ -92,7 +92,7 @@ impl<'b> Bits<'b> {
         }
     }
 
-    /// The number of so many bits, at most 16.
+    /// The value of a number of bits, at most 16.
     pub fn take(&mut self, bits: u32) -> Result<u32, EntropyError> {
         if self.count < bits {
             self.fill();
@@ -108,7 +108,7 @@ impl<'b> Bits<'b> {
         }
         let window = match self.count.checked_sub(16) {
             Some(rest) => (self.held >> rest) as u16,
-            // Behind the end are ones, which are no code.
+            // After the end the bits are ones, which are no code.
             None => ((self.held << 16 | 0xffff) >> self.count) as u16,
         };
         let (length, symbol) = code.codes[usize::from(window)];
@@ -124,7 +124,7 @@ impl<'b> Bits<'b> {
         }
     }
 
-    /// Leaves what is before the next marker, and gives how many whole bytes that are.
+    /// Skips to the next marker, and returns the number of whole bytes skipped.
     pub fn skip_to_marker(&mut self) -> usize {
         let mut extra = self.count as usize / 8;
         while self.next_byte().is_some() {
@@ -134,7 +134,7 @@ impl<'b> Bits<'b> {
         extra
     }
 
-    /// Whether this restart marker is next, which is then behind.
+    /// Whether this restart marker is next; if so, skips it.
     pub fn takes_restart(&mut self, number: usize) -> bool {
         while self.bytes.get(self.at..self.at + 2) == Some(&[0xff, 0xff]) {
             self.at += 1;

@@ -1,8 +1,9 @@
-//! JPEG: whether a file has all of its picture (ITU T.81). Decoders fill in what is missing.
+//! JPEG: checks that a file has its whole picture (ITU T.81). Decoders fill in missing data.
 //!
 //! The data of every scan, sequential or progressive, are followed code by code: each block of each
-//! restart interval has to be there. After the last scan every coefficient of every component has to be
-//! known to its last bit, so that a progressive file without its later scans is a part of a picture, too.
+//! restart interval must exist. After the last scan every coefficient of every component must be
+//! known to its last bit, so that a progressive file without its later scans is also a part of a
+//! picture.
 
 mod decode;
 mod entropy;
@@ -12,10 +13,10 @@ pub use decode::Opened;
 use entropy::{Huffman, word};
 use scan::{Component, SamplingFactors, Scan};
 
-/// Why a JPEG is not read.
+/// Why a JPEG cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JpegError {
-    /// The file ends before the mark of its end.
+    /// The file ends before its end marker.
     #[error("found a part of a picture: the file ends before it")]
     Truncated,
     /// A scan ends before its last block.
@@ -23,21 +24,21 @@ pub enum JpegError {
         "found a part of a picture: its data end at byte {at}, after {found} of {expected} units"
     )]
     Missing {
-        /// Where in the file.
+        /// The position in the file.
         at: usize,
-        /// How many units (T.81: MCU) the scan has.
+        /// The number of units (T.81: MCU) of the scan.
         found: usize,
-        /// How many the picture's size needs.
+        /// The number that the picture's size needs.
         expected: usize,
     },
-    /// A scan goes on behind its last block.
+    /// A scan continues after its last block.
     #[error(
         "found {extra} bytes of data at byte {at} that are of no pixel: the picture is damaged"
     )]
     Surplus {
-        /// Where in the file.
+        /// The position in the file.
         at: usize,
-        /// How many bytes.
+        /// The number of bytes.
         extra: usize,
     },
     /// Scans are missing.
@@ -46,20 +47,20 @@ pub enum JpegError {
         /// The identifier of the component.
         component: u8,
     },
-    /// Something else is not as the standard has it.
+    /// Another violation of the standard.
     #[error("found {what} at byte {at}: the picture is damaged")]
     Malformed {
-        /// What it is.
+        /// The violation.
         what: &'static str,
-        /// Where in the file.
+        /// The position in the file.
         at: usize,
     },
-    /// What the decoder says.
+    /// The message of the decoder.
     #[error("{0}")]
     Decoder(String),
 }
 
-/// What the segments say, as far as the scans depend on it.
+/// The content of the segments on which the scans depend.
 #[derive(Debug, Default)]
 struct Picture {
     size: [usize; 2],
@@ -82,8 +83,8 @@ mod marker {
     pub const RESTART: u8 = 0xdd;
 }
 
-/// Whether the segments and scans go on to the end of the picture, with all data of its pixels. What
-/// is coded in another way (arithmetic, lossless) is left to the decoder, which knows none of it.
+/// Checks that the segments and scans continue to the end of the picture, with all data of its
+/// pixels. Other codings (arithmetic, lossless) are left to the decoder, which rejects them.
 ///
 /// # Errors
 /// Data are missing or damaged.
@@ -93,7 +94,8 @@ pub fn check(bytes: &[u8]) -> Result<(), JpegError> {
     loop {
         match word(bytes, at).ok_or(JpegError::Truncated)? {
             [0xff, marker::END] => return picture.finish(at),
-            // Filling, and what stands alone: the start, restarts, and data that are no marker.
+            // Fill bytes, and markers without a length: the start, restarts, and data that are no
+            // marker.
             [0xff, 0xff] => at += 1,
             [0xff, 0x00 | 0x01 | 0xd0..=0xd8] => at += 2,
             [0xff, kind] => {
@@ -125,7 +127,7 @@ pub fn check(bytes: &[u8]) -> Result<(), JpegError> {
                 };
                 is_known.ok_or(malformed("a segment with a wrong content", start))?;
             }
-            // Bytes between segments are of no harm.
+            // Bytes between segments are harmless.
             _ => at += 1,
         }
     }
@@ -189,14 +191,15 @@ impl Picture {
             bit: approximation & 15,
         };
         let is_band = scan.first <= scan.last && scan.last < 64;
-        // Means and other coefficients are in scans of their own, and the latter by component.
+        // Means and other coefficients have separate scans, and the latter are separate by
+        // component.
         let is_mean = scan.first == 0 && scan.last == 0;
         let is_split = is_mean || scan.first > 0 && scan.members.len() == 1;
         let is_whole = !self.is_progressive || is_band && is_split;
         (is_whole && !scan.members.is_empty()).then_some(scan)
     }
 
-    /// Whether all is known at the end.
+    /// Checks that all coefficients are known at the end.
     fn finish(&self, at: usize) -> Result<(), JpegError> {
         if self.components.is_empty() {
             return Err(malformed("the end before a picture", at));

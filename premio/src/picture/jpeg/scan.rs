@@ -3,7 +3,7 @@
 use super::entropy::{Bits, EntropyError, Huffman};
 use super::{JpegError, Picture, malformed};
 
-/// A scan: some components, and which of their coefficients.
+/// A scan: its components, and the range of their coefficients.
 #[derive(Debug)]
 pub struct Scan {
     /// Components, and their tables for means and for other coefficients.
@@ -18,7 +18,7 @@ pub struct Scan {
     pub bit: u8,
 }
 
-/// How many blocks of a component a unit of several components has.
+/// The number of blocks of a component in a unit of several components.
 #[derive(Clone, Copy, Debug)]
 pub struct SamplingFactors {
     /// In a row.
@@ -54,11 +54,11 @@ impl Component {
     }
 }
 
-/// So many bytes before a marker are let pass: some encoders align their data.
+/// The most padding bytes before a marker: some encoders align their data.
 const ALIGNMENT: usize = 64;
 
 impl Picture {
-    /// Follows the data of a scan from a place in the file to the marker behind it.
+    /// Follows the data of a scan from a position in the file to the marker after it.
     pub fn follow(&mut self, scan: &Scan, bytes: &[u8], at: usize) -> Result<usize, JpegError> {
         let expected = self.units(scan);
         let interval = match self.restart_interval {
@@ -86,7 +86,8 @@ impl Picture {
         Ok(bits.at())
     }
 
-    /// How many units a scan has: blocks of a single component, or what several have in common.
+    /// The number of units of a scan: blocks of a single component, or interleaved blocks of
+    /// several.
     fn units(&self, scan: &Scan) -> usize {
         let sampling = |c: &Component| [c.sampling.across, c.sampling.down];
         let most = [0, 1].map(|i| self.components.iter().map(|c| sampling(c)[i]).max());
@@ -148,7 +149,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Puts down what is known after a scan.
+    /// Records the known bits after a scan.
     fn learn(&mut self, scan: &Scan) {
         let (selected, bit) = match self.is_progressive {
             true => (scan.first..=scan.last, scan.bit),
@@ -169,7 +170,7 @@ fn missing(bits: &Bits<'_>, found: usize, expected: usize) -> JpegError {
     }
 }
 
-/// Goes to the marker behind the data, of which hardly any are left.
+/// Skips to the marker after the data, over at most a few remaining bytes.
 fn behind(bits: &mut Bits<'_>) -> Result<(), JpegError> {
     let extra = bits.skip_to_marker();
     let at = bits.at() - extra.min(bits.at());
@@ -214,12 +215,12 @@ fn sequential(bits: &mut Bits<'_>, mean: &Huffman, other: &Huffman) -> Result<()
 struct SpectralSelection<'p> {
     last: usize,
     nonzero: &'p mut u64,
-    /// How many more blocks have nothing new.
+    /// The number of further blocks without new coefficients.
     zero_blocks: &'p mut u32,
 }
 
 impl SpectralSelection<'_> {
-    /// A run of blocks that have nothing new, of which this is the first.
+    /// A run of blocks without new coefficients, of which this is the first.
     fn run(&mut self, zeros: usize, bits: &mut Bits<'_>) -> Result<(), EntropyError> {
         *self.zero_blocks = (1 << zeros) + bits.take(zeros as u32)?;
         Ok(())
@@ -284,7 +285,8 @@ impl SpectralSelection<'_> {
         Ok(())
     }
 
-    /// The place of the next zero behind so many, with the bits of what is on the way.
+    /// The position of the next zero after a number of zeros, reading the correction bits on the
+    /// way.
     fn past(
         &self,
         mut at: usize,

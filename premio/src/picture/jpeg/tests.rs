@@ -17,7 +17,7 @@ fn place(bytes: &[u8], kinds: &[u8]) -> usize {
 fn whole_pictures_have_all_data() {
     for bytes in ALL {
         assert_eq!(check(bytes), Ok(()));
-        // What follows the end is no concern of the picture.
+        // Bytes after the end do not matter.
         assert_eq!(check(&[bytes, b"more"].concat()), Ok(()));
     }
 }

@@ -49,89 +49,138 @@ const DEEP: u32 = 10;
 
 /// The critical points of F at which F is within the resolution or a near miss.
 pub(super) fn singular_points<N: Float>(tracer: &Tracer<'_, N>) -> Result<Critical<N>, Unresolved> {
-    let reach = N::from_f64(CLOSE) * tracer.resolution;
-    let mut misses: Vec<[N; 2]> = Vec::new();
-    let mut found: Vec<SingularPoint<N>> = Vec::new();
-    // Degenerate points, each with the distance up to which F is within the resolution.
-    let mut degenerate: Vec<(SingularPoint<N>, N)> = Vec::new();
+    let mut search = CriticalSearch::new(tracer);
     let mut stack: Vec<(Cell<N>, u32)> = regular_grid().into_iter().map(|c| (c, 0)).collect();
-    let rounded_f64 = tracer.to_f64();
     while let Some((cell, depth)) = stack.pop() {
         tracer.look_at(&cell)?;
-        let rough = rounded_f64
-            .as_ref()
-            .map(|f| Look::at(f, &cell.to_f64(), reach.above()));
-        let look = match rough {
-            Some(look) if cell.is_coarse() || !matches!(look, Look::Unclear { .. }) => {
-                look.of_more()
-            }
-            _ => Look::at(tracer, &cell, reach),
-        };
-        if look == Look::Bare {
-            continue;
-        }
-        let [hx, hy] = cell.half();
-        let inside = |(p, reach): &(SingularPoint<N>, N)| {
-            hx.max(hy) <= *reach && near(&cell.centre(), &p.angles, N::TWO * *reach)
-        };
-        if degenerate.iter().any(inside) {
+        let look = search.look(&cell);
+        if look == Look::Bare || search.is_in_degenerate_zone(&cell) {
             continue;
         }
         let Look::Unclear { least, value, wide } = look else {
-            let Some(point) = only_critical(tracer, &cell) else {
-                continue;
-            };
-            let same = |q: &SingularPoint<N>| {
-                near(&q.angles, &point, N::from_f64(1e3) * tracer.slop.sqrt())
-            };
-            let value = tracer.form.value(point[0], point[1]).abs();
-            if value > tracer.resolution {
-                if value < reach {
-                    misses.push(point);
-                }
-            } else if !found.iter().any(same) {
-                let simple = leading_form::simple(tracer, point);
-                found.push(simple.ok_or(Unresolved::at(point))?);
-            }
+            search.add_only_critical(&cell)?;
             continue;
         };
         if depth >= DEEP && least > N::ZERO {
-            if value < reach {
-                misses.push(cell.centre());
-            }
+            search.add_miss(cell.centre(), value);
             continue;
         }
-        if is_milestone(depth)
-            && let Some((point, reach)) = leading_form::degenerate(tracer, cell.centre())
-        {
-            let known = |q: &(SingularPoint<N>, N)| near(&q.0.angles, &point.angles, reach);
-            if !degenerate.iter().any(known) {
-                degenerate.push((point, reach));
-            }
+        if is_milestone(depth) {
+            search.add_degenerate(&cell);
         }
         if depth >= deepest::<N>() {
             return Err(Unresolved::at(cell.centre()));
         }
         stack.extend(cell.halves(wide).map(|c| (c, depth + 1)));
     }
-    for (point, reach) in degenerate {
-        found.retain(|p| !near(&p.angles, &point.angles, N::TWO * reach));
-        found.push(point);
-    }
-    found.sort_by(|a, b| {
-        let [a, b] = [a.angles, b.angles];
-        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-    });
-    let mut close: Vec<[N; 2]> = Vec::new();
-    for p in found.iter().map(|p| p.angles).chain(misses) {
-        if !close.iter().any(|q| near(q, &p, N::from_f64(ZONE))) {
-            close.push(p);
+    Ok(search.critical())
+}
+
+/// A degenerate singular point.
+struct DegeneratePoint<N: Float> {
+    point: SingularPoint<N>,
+    /// The distance up to which F is within the resolution.
+    reach: N,
+}
+
+/// The search for critical points with small |F|, cell by cell.
+struct CriticalSearch<'t, 'a, N: Float> {
+    tracer: &'t Tracer<'a, N>,
+    /// The tracer in f64, if it is of extended precision.
+    f64_tracer: Option<Tracer<'t>>,
+    /// The largest |F| of a near miss.
+    reach: N,
+    misses: Vec<[N; 2]>,
+    simple: Vec<SingularPoint<N>>,
+    degenerate: Vec<DegeneratePoint<N>>,
+}
+
+impl<'t, 'a, N: Float> CriticalSearch<'t, 'a, N> {
+    fn new(tracer: &'t Tracer<'a, N>) -> Self {
+        Self {
+            tracer,
+            f64_tracer: tracer.to_f64(),
+            reach: N::from_f64(CLOSE) * tracer.resolution,
+            misses: Vec::new(),
+            simple: Vec::new(),
+            degenerate: Vec::new(),
         }
     }
-    Ok(Critical {
-        singular: found,
-        close,
-    })
+
+    /// What the bounds over a cell show: in f64 where that is conclusive.
+    fn look(&self, cell: &Cell<N>) -> Look<N> {
+        let in_f64 = |f: &Tracer<'_>| Look::at(f, &cell.to_f64(), self.reach.above());
+        match self.f64_tracer.as_ref().map(in_f64) {
+            Some(look) if cell.is_coarse() || !matches!(look, Look::Unclear { .. }) => {
+                look.of_more()
+            }
+            _ => Look::at(self.tracer, cell, self.reach),
+        }
+    }
+
+    /// Whether a cell lies in the neighbourhood that a degenerate point accounts for.
+    fn is_in_degenerate_zone(&self, cell: &Cell<N>) -> bool {
+        let [hx, hy] = cell.half();
+        self.degenerate.iter().any(|d| {
+            hx.max(hy) <= d.reach && near(&cell.centre(), &d.point.angles, N::TWO * d.reach)
+        })
+    }
+
+    /// Adds the only critical point of a cell with a regular Hessian, if there is one.
+    fn add_only_critical(&mut self, cell: &Cell<N>) -> Result<(), Unresolved> {
+        let Some(point) = only_critical(self.tracer, cell) else {
+            return Ok(());
+        };
+        let value = self.tracer.form.value(point[0], point[1]).abs();
+        if value > self.tracer.resolution {
+            self.add_miss(point, value);
+            return Ok(());
+        }
+        let same = N::from_f64(1e3) * self.tracer.slop.sqrt();
+        if !self.simple.iter().any(|q| near(&q.angles, &point, same)) {
+            let simple = leading_form::simple(self.tracer, point);
+            self.simple.push(simple.ok_or(Unresolved::at(point))?);
+        }
+        Ok(())
+    }
+
+    /// Adds a near miss, if |F| is small enough for one.
+    fn add_miss(&mut self, angles: [N; 2], value: N) {
+        if value < self.reach {
+            self.misses.push(angles);
+        }
+    }
+
+    /// Adds the degenerate point next to a cell's centre, if there is one that is not known.
+    fn add_degenerate(&mut self, cell: &Cell<N>) {
+        let Some((point, reach)) = leading_form::degenerate(self.tracer, cell.centre()) else {
+            return;
+        };
+        let is_same = |d: &DegeneratePoint<N>| near(&d.point.angles, &point.angles, reach);
+        if !self.degenerate.iter().any(is_same) {
+            self.degenerate.push(DegeneratePoint { point, reach });
+        }
+    }
+
+    /// What was found: a degenerate point replaces the simple ones in its neighbourhood.
+    fn critical(self) -> Critical<N> {
+        let mut singular = self.simple;
+        for DegeneratePoint { point, reach } in self.degenerate {
+            singular.retain(|p| !near(&p.angles, &point.angles, N::TWO * reach));
+            singular.push(point);
+        }
+        singular.sort_by(|a, b| {
+            let [a, b] = [a.angles, b.angles];
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        });
+        let mut close: Vec<[N; 2]> = Vec::new();
+        for p in singular.iter().map(|p| p.angles).chain(self.misses) {
+            if !close.iter().any(|q| near(q, &p, N::from_f64(ZONE))) {
+                close.push(p);
+            }
+        }
+        Critical { singular, close }
+    }
 }
 
 /// Whether degenerate points are searched for at a depth of cells. One search covers a large

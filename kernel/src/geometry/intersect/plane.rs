@@ -257,6 +257,29 @@ fn plane_through_apex<N: Float>(
     meeting
 }
 
+/// The section of a cone by a plane at a distance from its apex.
+struct ConeSection<'a, N: Float> {
+    plane: &'a Plane<N>,
+    cone: &'a Cone<N>,
+    /// The distance of the apex above the plane.
+    height: N,
+    /// The cosine of the angle between the plane's normal and the axis.
+    cos: N,
+    /// The semi-latus rectum: of every section the apex's distance from the plane times the tangent
+    /// of the half angle.
+    rectum: N,
+}
+
+/// The two rulings of a cone in the plane of symmetry of a section.
+struct SymmetricRulings<N: Float> {
+    /// The unit vector of the plane of symmetry across the axis.
+    across: Vector3<N>,
+    /// Their directions.
+    directions: [Vector3<N>; 2],
+    /// The rates at which they approach the plane.
+    rates: [N; 2],
+}
+
 fn plane_beside_apex<N: Float>(
     p: &Plane<N>,
     c: &Cone<N>,
@@ -264,78 +287,114 @@ fn plane_beside_apex<N: Float>(
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
 ) -> SurfaceIntersection<N> {
-    let (n, z) = (p.frame.z, c.frame.z);
-    let cos = n.dot(&z);
-    let mut meeting = SurfaceIntersection::nothing();
-    let tan = c.sin / c.cos;
-    // The semi-latus rectum of every section is the apex's distance from the plane times tan.
-    let rectum = h.abs() * tan;
+    let section = ConeSection {
+        plane: p,
+        cone: c,
+        height: h,
+        cos: p.frame.z.dot(&c.frame.z),
+        rectum: h.abs() * (c.sin / c.cos),
+    };
     let at = place(&c.frame.origin);
-    if predicates.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
-        let up = -h / cos;
-        if up > N::ZERO {
-            let frame = c.frame.at(c.frame.origin + z * up);
-            meeting.add(
-                Curve::Circle(Circle {
-                    frame,
-                    radius: up * tan,
-                }),
-                false,
-                pair.extent,
-            );
-        }
-        return meeting;
-    }
-    // The two rulings in the plane of symmetry, and the rates at which they approach the plane.
-    let w = (n - z * cos).unit();
-    let rulings = [z * c.cos + w * c.sin, z * c.cos - w * c.sin];
-    let rates = rulings.map(|r| n.dot(&r));
-    let vertex = |i: usize| c.frame.origin - rulings[i] * (h / rates[i]);
-    let parallel = [false, true].map(|far| {
+    let is_along = |far: bool| {
         let along = pair.how(PairMeasure::PlaneAlongRuling(far));
         predicates.coincide("ruling along plane", along, at)
-    });
-    if let Some(i) = parallel.iter().position(|&p| p) {
-        if -h / rates[1 - i] > N::ZERO {
-            let frame = Frame::toward(vertex(1 - i), n, rulings[i]);
-            meeting.add(
-                Curve::Conic(Conic::about_vertex(frame, rectum, N::ZERO)),
-                false,
-                pair.extent,
-            );
-        }
-        return meeting;
-    }
-    let ahead = rates.map(|r| -h / r > N::ZERO);
-    let near = match ahead {
-        // The vertex closer to the apex.
-        [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
-        [true, false] => 0,
-        [false, true] => 1,
-        [false, false] => return meeting,
     };
-    // The distance between the vertices, computed without the apex's coordinates, which would lose
-    // digits close to it.
-    let product = rates[0] * rates[1];
-    let a = h.abs() * c.sin * c.cos / product.abs();
-    let b = (rectum * a).sqrt();
-    let along = (w * cos - z * n.dot(&w)) * (h * product).signum();
-    let x = if near == 0 { -along } else { along };
-    let vertex = vertex(near);
-    let closed = ahead == [true, true];
-    let curve =
-        if a > N::from_f64(FAR) * ((vertex - pair.extent.centre).length() + pair.extent.radius) {
+    let curve = if predicates.coincide("plane across axis", pair.how(PairMeasure::Drift), at) {
+        section.circle()
+    } else {
+        let rulings = section.symmetric_rulings();
+        match [false, true].map(is_along).iter().position(|&along| along) {
+            Some(i) => section.parabola(&rulings, i),
+            None => section.central_conic(&rulings, pair.extent),
+        }
+    };
+    let mut meeting = SurfaceIntersection::nothing();
+    if let Some(curve) = curve {
+        meeting.add(curve, false, pair.extent);
+    }
+    meeting
+}
+
+impl<N: Float> ConeSection<'_, N> {
+    /// The circle in a plane across the axis; `None` on the other side of the apex.
+    fn circle(&self) -> Option<Curve<N>> {
+        let c = self.cone;
+        let up = -self.height / self.cos;
+        (up > N::ZERO).then(|| {
+            Curve::Circle(Circle {
+                frame: c.frame.at(c.frame.origin + c.frame.z * up),
+                radius: up * (c.sin / c.cos),
+            })
+        })
+    }
+
+    fn symmetric_rulings(&self) -> SymmetricRulings<N> {
+        let (n, z, c) = (self.plane.frame.z, self.cone.frame.z, self.cone);
+        let across = (n - z * self.cos).unit();
+        let directions = [z * c.cos + across * c.sin, z * c.cos - across * c.sin];
+        SymmetricRulings {
+            across,
+            directions,
+            rates: directions.map(|r| n.dot(&r)),
+        }
+    }
+
+    /// The vertex of the section on one of the rulings in its plane of symmetry.
+    fn vertex(&self, rulings: &SymmetricRulings<N>, i: usize) -> Point3<N> {
+        self.cone.frame.origin - rulings.directions[i] * (self.height / rulings.rates[i])
+    }
+
+    /// The parabola in a plane parallel to the i-th ruling; `None` on the other side of the apex.
+    fn parabola(&self, rulings: &SymmetricRulings<N>, i: usize) -> Option<Curve<N>> {
+        (-self.height / rulings.rates[1 - i] > N::ZERO).then(|| {
+            let vertex = self.vertex(rulings, 1 - i);
+            let frame = Frame::toward(vertex, self.plane.frame.z, rulings.directions[i]);
+            Curve::Conic(Conic::about_vertex(frame, self.rectum, N::ZERO))
+        })
+    }
+
+    /// The ellipse or the branch of a hyperbola; `None` on the other side of the apex. If its centre
+    /// is too far away, it is a conic about its vertex.
+    fn central_conic(
+        &self,
+        rulings: &SymmetricRulings<N>,
+        extent: &RegionOfInterest<N>,
+    ) -> Option<Curve<N>> {
+        let (n, z, c, h) = (
+            self.plane.frame.z,
+            self.cone.frame.z,
+            self.cone,
+            self.height,
+        );
+        let rates = rulings.rates;
+        let ahead = rates.map(|r| -h / r > N::ZERO);
+        let near = match ahead {
+            // The vertex closer to the apex.
+            [true, true] => usize::from(rates[1].abs() > rates[0].abs()),
+            [true, false] => 0,
+            [false, true] => 1,
+            [false, false] => return None,
+        };
+        // The distance between the vertices, computed without the apex's coordinates, which would
+        // lose digits close to it.
+        let product = rates[0] * rates[1];
+        let a = h.abs() * c.sin * c.cos / product.abs();
+        let b = (self.rectum * a).sqrt();
+        let across = rulings.across;
+        let along = (across * self.cos - z * n.dot(&across)) * (h * product).signum();
+        let x = if near == 0 { -along } else { along };
+        let vertex = self.vertex(rulings, near);
+        let closed = ahead == [true, true];
+        if a > N::from_f64(FAR) * ((vertex - extent.centre).length() + extent.radius) {
             let outward = if closed { N::ONE } else { -N::ONE };
             let frame = Frame::toward(vertex, n, -x * outward);
-            Curve::Conic(Conic::about_vertex(frame, rectum, outward * rectum / a))
-        } else {
-            let frame = Frame::toward(vertex - x * a, n, x);
-            if closed {
-                Curve::Ellipse(Ellipse { frame, a, b })
-            } else {
-                Curve::Hyperbola(Hyperbola { frame, a, b })
-            }
-        };
-    meeting.add(curve, false, pair.extent);
-    meeting
+            let bend = outward * self.rectum / a;
+            return Some(Curve::Conic(Conic::about_vertex(frame, self.rectum, bend)));
+        }
+        let frame = Frame::toward(vertex - x * a, n, x);
+        Some(match closed {
+            true => Curve::Ellipse(Ellipse { frame, a, b }),
+            false => Curve::Hyperbola(Hyperbola { frame, a, b }),
+        })
+    }
 }

@@ -19,6 +19,12 @@ use crate::number::predicates::{Predicates, Side};
 /// The nodes on a curve, as (angle of the node, parameter of the curve).
 type Passes<N> = Vec<(N, N)>;
 
+/// A branch over the base, with the nodes that it passes.
+struct QuarticBranch<N: Float> {
+    curve: QuadricCurve<N>,
+    passes: Passes<N>,
+}
+
 impl<N: Float> Rulings<'_, N> {
     /// k ≠ 0: two points on each ruling where Δ > 0.
     pub(in crate::geometry::intersect) fn double(
@@ -112,7 +118,28 @@ impl<N: Float> Rulings<'_, N> {
         meeting: &mut SurfaceIntersection<N>,
     ) -> Result<(), IntersectionError> {
         let structure = self.structure(predicates)?;
-        for &u in &structure.isolated {
+        self.add_isolated(&structure.isolated, predicates, meeting);
+        let whole_turns = structure.arcs.is_empty() && structure.positive;
+        let around = whole_turns.then(|| self.branches_around(structure.nodes.first().copied()));
+        let ovals = structure
+            .arcs
+            .iter()
+            .map(|arc| self.oval(*arc, &structure.nodes));
+        let branches: Vec<_> = around.into_iter().flatten().chain(ovals).collect();
+        for branch in branches {
+            self.add_clipped(branch.curve, &branch.passes, predicates, meeting);
+        }
+        Ok(())
+    }
+
+    /// Adds the points of contact at isolated double zeros of the radicand.
+    fn add_isolated(
+        &self,
+        isolated: &[N],
+        predicates: &Predicates,
+        meeting: &mut SurfaceIntersection<N>,
+    ) {
+        for &u in isolated {
             let p = self.world(u, self.middle(u));
             if self.is_on_base(self.middle(u)) && predicates.within(self.other.distance(&p)) {
                 meeting.nodes.push(Node {
@@ -121,66 +148,70 @@ impl<N: Float> Rulings<'_, N> {
                 });
             }
         }
-        let mut curves: Vec<(QuadricCurve<N>, Passes<N>)> = Vec::new();
-        let make = |sweep, height| QuadricCurve {
+    }
+
+    /// A branch without passes through nodes, or with those given.
+    fn branch(&self, sweep: Sweep<N>, height: Height<N>, passes: Passes<N>) -> QuarticBranch<N> {
+        let curve = QuadricCurve {
             base: self.base,
             sweep,
             height,
         };
-        let along = Along::new(self.lead, self.linear, self.constant);
-        if structure.arcs.is_empty() && structure.positive {
-            match structure.nodes.first() {
-                None => {
-                    for sign in [N::ONE, -N::ONE] {
-                        let radicand = self.radicand;
-                        let height = Height::Whole {
-                            along,
-                            radicand,
-                            sign,
-                        };
-                        curves.push((make(Sweep::Round { turns: 1 }, height), Vec::new()));
-                    }
-                }
-                Some(&node) => {
-                    let half = between(node, node).map(|k| -k);
-                    let rest = divide(&self.radicand, &half);
-                    let height = Height::Deflated {
-                        along,
-                        rest,
-                        node: Some(node),
-                        sign: N::ONE,
-                    };
-                    let at = vec![(node, node), (node, node + N::TAU)];
-                    curves.push((make(Sweep::Round { turns: 2 }, height), at));
-                }
-            }
-        }
-        for &[a, b] in &structure.arcs {
-            let mut rest = divide(&self.radicand, &between(a, b));
-            let node = structure.nodes.iter().copied().find_map(|n| {
-                let n = a + (n - a).rem_euclid(N::TAU);
-                (n < b).then_some(n)
-            });
-            let (mid, half) = (N::HALF * (a + b), N::HALF * (b - a));
-            let mut at = Vec::new();
-            if let Some(n) = node {
-                // rest = K sin²((u - n)/2); only K is needed.
-                rest = [N::TWO * rest[0], N::ZERO, N::ZERO];
-                let t = ((mid - n) / half).clamp(-N::ONE, N::ONE).acos();
-                at = vec![(n, t), (n, N::TAU - t)];
-            }
-            let height = Height::Deflated {
-                along,
-                rest,
-                node,
-                sign: N::ONE,
+        QuarticBranch { curve, passes }
+    }
+
+    fn along(&self) -> Along<N> {
+        Along::new(self.lead, self.linear, self.constant)
+    }
+
+    /// The branches that go around the base, where the radicand has no simple zero: two, or with a
+    /// node one that goes around twice.
+    fn branches_around(&self, node: Option<N>) -> Vec<QuarticBranch<N>> {
+        let Some(node) = node else {
+            let with_sign = |sign| {
+                let height = Height::Whole {
+                    along: self.along(),
+                    radicand: self.radicand,
+                    sign,
+                };
+                self.branch(Sweep::Round { turns: 1 }, height, Vec::new())
             };
-            curves.push((make(Sweep::Oval { mid, half }, height), at));
+            return [N::ONE, -N::ONE].map(with_sign).into();
+        };
+        let half = between(node, node).map(|k| -k);
+        let height = Height::Deflated {
+            along: self.along(),
+            rest: divide(&self.radicand, &half),
+            node: Some(node),
+            sign: N::ONE,
+        };
+        let passes = vec![(node, node), (node, node + N::TAU)];
+        vec![self.branch(Sweep::Round { turns: 2 }, height, passes)]
+    }
+
+    /// The branch over an arc between two simple zeros of the radicand, with the node inside it, if
+    /// there is one.
+    fn oval(&self, [a, b]: [N; 2], nodes: &[N]) -> QuarticBranch<N> {
+        let mut rest = divide(&self.radicand, &between(a, b));
+        let node = nodes.iter().copied().find_map(|n| {
+            let n = a + (n - a).rem_euclid(N::TAU);
+            (n < b).then_some(n)
+        });
+        let (mid, half) = (N::HALF * (a + b), N::HALF * (b - a));
+        let mut passes = Vec::new();
+        if let Some(n) = node {
+            // rest = K sin²((u - n)/2); only K is needed.
+            rest = [N::TWO * rest[0], N::ZERO, N::ZERO];
+            let t = ((mid - n) / half).clamp(-N::ONE, N::ONE).acos();
+            passes = vec![(n, t), (n, N::TAU - t)];
         }
-        for (quartic, nodes) in curves {
-            self.add_clipped(quartic, &nodes, predicates, meeting);
-        }
-        Ok(())
+        let height = Height::Deflated {
+            along: self.along(),
+            rest,
+            node,
+            sign: N::ONE,
+        };
+        self.branch(Sweep::Oval { mid, half }, height, passes)
     }
 
     /// Adds a branch, clipped to the base's nappe and the other surface's.

@@ -7,7 +7,8 @@ use crate::part::SoughtPart;
 use crate::search::SearchStats;
 use crate::verification::part_match::{PartMatch, SearchResult};
 use crate::verification::residuals::SystematicOffset;
-use crate::verification::scoring::{FEWEST, SMALLEST, is_figure};
+use crate::verification::score_weights::WEIGHTS;
+use crate::verification::scoring::is_figure;
 use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix3};
 use premio_kernel::geometry::frame::Frame;
@@ -376,11 +377,12 @@ fn reason(part: &SoughtPart<'_>, picture: &ImageFeatures, finding: &SearchResult
             }
             (_, _, Some(few)) => format!(
                 "the likeliest match has {} features, {:.0} pixels of contour and {:.0} % of the contour in \
-                 the picture: a pose needs {}, {SMALLEST} and {:.0} %",
+                 the picture: a pose needs {}, {} and {:.0} %",
                 few.found(),
                 few.length(),
                 100.0 * few.inside(),
-                FEWEST[usize::from(part.axis.is_some())],
+                WEIGHTS.fewest_features(part.axis.is_some()),
+                WEIGHTS.min_length,
                 100.0 * INSIDE
             ),
             (_, n, None) => format!("none of the {n} proposed poses fits the picture"),

@@ -9,5 +9,6 @@
 pub mod axis_alignment;
 pub mod part_match;
 pub mod residuals;
+pub mod score_weights;
 pub mod scoring;
 pub mod shape_evidence;

@@ -7,7 +7,7 @@ use crate::part::SoughtPart;
 use crate::pose::refine::PointToLine;
 use crate::search::{SearchStats, Strategy};
 use crate::verification::residuals::SystematicOffset;
-use crate::verification::scoring::{DETERMINED, FEWEST, PIECE, REPEATED, SMALLEST};
+use crate::verification::score_weights::WEIGHTS;
 use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix6};
 use premio_predict::image_arcs::ArcSource;
@@ -166,7 +166,9 @@ impl PartMatch {
     /// rest. What is found does not distinguish these two. The more shape evidence there is, the
     /// rarer are such things.
     fn whole(&self) -> f64 {
-        PIECE[0] + self.shape.determined / PIECE[1] + self.shape.undetermined
+        WEIGHTS.subpart_odds
+            + self.shape.determined / WEIGHTS.subpart_shape
+            + self.shape.undetermined
     }
 
     /// Whether a thing that lacks the rest of the part is likelier than the part.
@@ -177,7 +179,7 @@ impl PartMatch {
     /// The probability of the part against the likelier alternative: another thing, or a piece of
     /// the part.
     pub fn probability(&self) -> f64 {
-        let odds = (self.weight() / REPEATED).min(self.whole());
+        let odds = (self.weight() / WEIGHTS.evidence_tempering).min(self.whole());
         1.0 / (1.0 + (-odds).exp())
     }
 
@@ -213,9 +215,9 @@ impl PartMatch {
 
     /// Whether enough is found to determine the pose of a part.
     pub fn is_determined(&self, part: &SoughtPart<'_>) -> bool {
-        let fewest = FEWEST[usize::from(part.axis.is_some())];
-        let enough = self.length() >= SMALLEST && self.inside() >= INSIDE;
-        self.found() >= fewest && self.fitted > DETERMINED && enough
+        let fewest = WEIGHTS.fewest_features(part.axis.is_some());
+        let enough = self.length() >= WEIGHTS.min_length && self.inside() >= INSIDE;
+        self.found() >= fewest && self.fitted > WEIGHTS.min_pose_information && enough
     }
 
     /// The `DOUBTED` correspondences with the greatest residuals, in falling order.
@@ -282,7 +284,7 @@ impl SearchResult {
         let Some((best, others)) = self.matches.split_first() else {
             return &[];
         };
-        let near = |m: &PartMatch| m.weight() > best.weight() - RIVAL * REPEATED;
+        let near = |m: &PartMatch| m.weight() > best.weight() - RIVAL * WEIGHTS.evidence_tempering;
         let is = |m: &PartMatch| best.is_accepted() && m.is_accepted() && near(m);
         &others[..others.iter().take_while(|m| is(m)).count()]
     }

@@ -1,16 +1,16 @@
 //! `premio contours`: what a camera sees.
 
 use crate::arguments::{CameraChoice, ContoursFormat, ContoursOptions, ViewName};
-use crate::diagnostics::CliError;
+use crate::diagnostics::{CliError, counted};
 use crate::input::EvaluatedPart;
 use crate::session::Session;
 use crate::{input, output};
 use premio::{Camera, Drawing, DrawingOptions, Paper, Sheet, StandardView, Unit, View};
 use premio_drawing::sheet::{self, Angle};
 use premio_drawing::{dxf, svg};
-use premio_visibility::ViewCamera;
 use premio_visibility::camera::CameraError;
 use premio_visibility::contours::ViewError;
+use premio_visibility::{Contours, ViewCamera};
 use std::path::Path;
 
 /// Runs the command.
@@ -37,11 +37,25 @@ pub fn run(options: &ContoursOptions, session: Session) -> Result<(), CliError> 
             if let Some(n) = options.samples {
                 contours.sample(n as usize);
             }
-            output::json(&contours, to)
+            output::json(&contours, to)?;
+            voice.summary(&words(&contours));
+            Ok(())
         }
         ContoursFormat::Svg => output::write(svg::write(&drawing(&seen, options)), to),
         ContoursFormat::Dxf => output::write(dxf::write(&drawing(&seen, options)), to),
     }
+}
+
+/// The contours in words.
+fn words(contours: &Contours) -> String {
+    let pieces = || contours.contours.iter().flat_map(|c| &c.pieces);
+    format!(
+        "{} in {}, {} visible; {}",
+        counted(contours.contours.len(), "contour"),
+        counted(pieces().count(), "piece"),
+        pieces().filter(|piece| piece.visible).count(),
+        counted(contours.junctions.len(), "junction")
+    )
 }
 
 /// The view of a camera; `given` is its origin, where that is not the name of a view.

@@ -1,7 +1,7 @@
 //! `premio model`: the summary of many predictions.
 
 use crate::arguments::{MergeOptions, ModelCommand, ModelOptions, ModelRunOptions, RecordsFormat};
-use crate::diagnostics::CliError;
+use crate::diagnostics::{CliError, counted};
 use crate::input::EvaluatedPart;
 use crate::interrupt::{pool, stop};
 use crate::model::format;
@@ -84,7 +84,15 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
         if let Some(Record::Model(head)) = records.first() {
             file.check_seen(head, session)?;
         }
-        output::write(format::bytes(records, format)?, to)
+        let count = records.len();
+        output::write(format::bytes(records, format)?, to)?;
+        bar.finish_and_clear();
+        let setups = counted(run.setups.len(), "setup");
+        voice.summary(&format!(
+            "a model of {setups}: {}",
+            counted(count, "record")
+        ));
+        Ok(())
     });
     bar.finish_and_clear();
     match &made {

@@ -1,12 +1,13 @@
 //! `premio predict`: the features that a sensor and a detector find.
 
 use crate::arguments::PredictOptions;
-use crate::diagnostics::CliError;
+use crate::diagnostics::{CliError, counted};
 use crate::output::Outputs;
 use crate::session::Session;
 use crate::setup::setup;
 use crate::{imaging, input};
-use premio_predict::prediction::prediction;
+use premio_predict::feature::detected_arc::DetectionState;
+use premio_predict::prediction::{Prediction, prediction};
 
 /// Runs the command.
 pub fn run(options: &PredictOptions, session: Session) -> Result<(), CliError> {
@@ -26,5 +27,22 @@ pub fn run(options: &PredictOptions, session: Session) -> Result<(), CliError> {
     if options.output.is_some() || options.overlay.is_none() {
         outputs.add_json(&predicted, options.output.as_deref())?;
     }
-    outputs.finish()
+    outputs.finish()?;
+    voice.summary(&words(&predicted));
+    Ok(())
+}
+
+/// The prediction in words: the numbers of features by their most frequent state.
+fn words(predicted: &Prediction) -> String {
+    let states = DetectionState::ALL.map(|state| {
+        let arcs = predicted.arcs.iter().filter(|arc| arc.state == state);
+        format!("{} {}", arcs.count(), state.word())
+    });
+    format!(
+        "{}: {}; {}, {}",
+        counted(predicted.arcs.len(), "feature"),
+        states.join(", "),
+        counted(predicted.regions.len(), "region"),
+        counted(predicted.segments.len(), "segment")
+    )
 }

@@ -13,7 +13,7 @@ use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::setup::SetupError;
 use premio_text::{LineColumn, escape};
 use std::ffi::OsString;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::ops::Range;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -200,6 +200,13 @@ impl Reporter {
         if !calls.is_empty() {
             let text = close_calls(name, resolution, calls);
             self.tell(&Message::without_excerpt(text).with_calls(calls));
+        }
+    }
+
+    /// Reports the result in words, on a terminal only: the result itself is JSON.
+    pub fn summary(self, text: &str) {
+        if !self.is_json() && io::stderr().is_terminal() {
+            say(text);
         }
     }
 

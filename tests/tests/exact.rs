@@ -21,6 +21,10 @@ const MEANT: &[(&str, &str)] = &[
         "turned by 45 degrees, to rational numbers",
     ),
     (
+        "cone-around-a-ball-with-a-lip-of-1e-9",
+        "where the lip enters the other ball, points are 1.5e-12 apart",
+    ),
+    (
         "cone-tip-on-cone-along-tangent",
         "turned by an angle in decimals",
     ),

@@ -61,7 +61,7 @@ pub enum CrossingSense {
     /// The path leaves the face, from the arc's left to its right.
     Leaving,
     /// The path is tangent to the arc, runs along it, passes an end of it within the resolution, or
-    /// crosses it where rounding moves the arc by more than the resolution. Another path is needed.
+    /// crosses it where the arc may turn back within its rounding error. Another path is needed.
     Unclear,
 }
 
@@ -77,6 +77,10 @@ pub struct PathCrossing<N: Float = f64> {
     /// How the path crosses the arc.
     pub passage: CrossingSense,
 }
+
+/// A curve crosses a path clearly if the sine of their angle is greater than this times its rounding
+/// error over its radius of curvature.
+const TURNS_BACK: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug)]
 enum Track<N: Float = f64> {
@@ -396,8 +400,12 @@ impl<N: Float> SurfacePath<N> {
             let turn = sign * across.dot(&arc.curve.tangent(t));
             let at_end = s.is_at_most(resolution) || s.reaches(self.length - resolution);
             let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
+            // The curve may turn back within its rounding error, and cross the path again.
             let is_vague = || match arc.curve {
-                Curve::Toric(c) => c.rounding_error(t).is_beyond(resolution),
+                Curve::Toric(c) => {
+                    let bend = arc.curve.curvature(t).length();
+                    c.rounding_error(t) * bend * N::from_f64(TURNS_BACK) > turn.abs()
+                }
                 _ => false,
             };
             let passage = if !simple || at_end || is_along || is_vague() {

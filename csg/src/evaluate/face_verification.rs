@@ -110,7 +110,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
-    use super::super::arrangement::arrange;
+    use super::super::carrier_intersections::arrange;
     use super::super::halfspaces::HalfSpaceModel;
     use super::super::membership::Membership;
     use super::super::{EvaluationOptions, MAX_ENTITIES, evaluate};

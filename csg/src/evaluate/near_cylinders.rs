@@ -1,7 +1,7 @@
 //! Frustums that are nearly cylinders, with an apex that is far away or, within the resolution, at
 //! infinity.
 
-use super::EvaluationError;
+use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use crate::primitive::Primitive;
 use crate::tree::{PlacedPrimitive, Tree};

@@ -18,10 +18,11 @@ use super::vector::rounded as place;
 use crate::geometry::sense::Sense;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
+use crate::number::function::Function;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::predicates::Predicates;
-use crate::number::roots::{Function, Roots, isolate};
+use crate::number::roots::{Roots, isolate};
 use nalgebra::Point3;
 
 /// The ball that contains the part. Intersections outside it are not computed.

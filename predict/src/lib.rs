@@ -7,6 +7,7 @@
 //! edge to its feature.
 
 pub mod feature;
+mod highlight;
 pub mod image;
 pub mod image_arcs;
 pub mod model;

@@ -4,7 +4,6 @@
 pub(crate) mod arc;
 pub(crate) mod crossings;
 pub(crate) mod flatten;
-pub(crate) mod highlight;
 pub mod lit_scene;
 pub(crate) mod pierce;
 pub(crate) mod regions;

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::reader::{Format, ReadOptions, read};
     use crate::tree::Tree;
-    use premio_kernel::geometry::intersect::RegionOfInterest;
+    use premio_kernel::geometry::region_of_interest::RegionOfInterest;
     use premio_kernel::number::predicates::Predicates;
 
     const PARTS: [[&str; 2]; 4] = [

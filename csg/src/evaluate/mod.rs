@@ -54,7 +54,7 @@ use premio_kernel::brep::bounding_box::bounds;
 use premio_kernel::brep::check::{Violation, check, worst_gap};
 use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
 use premio_kernel::geometry::bounds::Aabb;
-use premio_kernel::geometry::intersect::RegionOfInterest;
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::extended::F237;
 use premio_kernel::number::float::Float;

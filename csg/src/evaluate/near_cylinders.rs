@@ -5,7 +5,7 @@ use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use crate::primitive::Primitive;
 use crate::tree::{PlacedPrimitive, Tree};
-use premio_kernel::geometry::intersect::RegionOfInterest;
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;

@@ -1,5 +1,5 @@
-//! The curves that divide an image into regions: the visible pieces of contours, the boundaries of
-//! cast shadows and the outlines of highlights.
+//! The curves that divide an image into regions: the visible pieces of contours and the boundaries
+//! of cast shadows. `highlight` adds the outlines of highlights.
 
 pub(crate) mod arc;
 pub(crate) mod crossings;

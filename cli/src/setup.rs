@@ -9,11 +9,11 @@ use premio_kernel::brep::bounding_box::bounds;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_predict::image::shading::Finishes;
 use premio_predict::image_arcs::lit_scene::StageError;
-use premio_predict::model::Setups;
 use premio_predict::model::record::ModelHead;
 use premio_predict::prediction::{self, Memory, PredictedImage};
 use premio_predict::prepared_part::PreparedPart;
 use premio_predict::setup::light::Light;
+use premio_predict::setup::setups::Setups;
 use premio_predict::setup::{Conditions, Setup, SetupError, detector_from_toml};
 use std::path::Path;
 

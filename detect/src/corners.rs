@@ -1,9 +1,9 @@
 //! Corners: points where segments end at an angle to each other (Haralick & Shapiro ch. 11).
 
 use super::detection::{DetectedCorner, DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
-use super::detector::Detector;
 use super::fit::foot_on_conic;
 use super::joining::End;
+use super::parameters::Detector;
 
 /// The sine of the least angle at which segments make a corner: 20 degrees.
 const MARKED: f64 = 0.342_020_143_325_668_7;

@@ -1,7 +1,7 @@
 //! Gradients by masks (Haralick & Shapiro ch. 7).
 
-use super::detector::Mask;
 use super::grey::Grey;
+use super::parameters::Mask;
 use super::pixel_mask::PixelMask;
 use std::ops::Range;
 

@@ -1,7 +1,7 @@
 //! Joining of chains across gaps.
 
 use super::detection::{EdgeChain, EdgePixel};
-use super::detector::Detector;
+use super::parameters::Detector;
 
 /// The cosine of the greatest angle between chains that are joined: 30 degrees.
 const AGREEING: f64 = 0.866_025_403_784_438_6;

@@ -16,6 +16,7 @@ mod gradient;
 mod grey;
 mod joining;
 mod linking;
+mod parameters;
 mod pixel_mask;
 mod segments;
 mod shrink;
@@ -30,7 +31,7 @@ mod tests;
 pub use detection::{
     DetectedCorner, DetectedSegment, Detection, EdgeChain, EdgePixel, SegmentShape,
 };
-pub use detector::{Detector, DetectorError, Mask, Thinning};
 pub use grey::Grey;
+pub use parameters::{Detector, DetectorError, Mask, Thinning};
 pub use pixel_mask::PixelMask;
 pub use workspace::Workspace;

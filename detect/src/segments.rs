@@ -2,8 +2,8 @@
 //! (Haralick & Shapiro ch. 11).
 
 use super::detection::{DetectedSegment, EdgeChain, EdgePixel, SegmentShape};
-use super::detector::Detector;
 use super::fit::{Fit, LineFit, distance_to_conic, ellipse, line};
+use super::parameters::Detector;
 use super::splitting::{outermost, split, split_closed};
 use super::walk::{Stretch, Walk};
 use std::ops::Range;

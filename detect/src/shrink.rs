@@ -1,8 +1,8 @@
 //! The connected shrink operator (Haralick & Shapiro ch. 6): border pixels are removed as long as
 //! connected pixels stay connected.
 
-use super::detector::Thinning;
 use super::gradient::{Gradient, ROUNDING};
+use super::parameters::Thinning;
 use super::workspace::{Workspace, neighbours};
 
 /// By the set of neighbours: whether a pixel can be removed. Yokoi's connectivity number for

@@ -1,8 +1,8 @@
 //! Selection of edge pixels: thresholds, non-maximum suppression and hysteresis (Canny 1986).
 
 use super::detection::EdgePixel;
-use super::detector::{Detector, Thinning};
 use super::gradient::{Gradient, ROUNDING, runs};
+use super::parameters::{Detector, Thinning};
 use super::pixel_mask::PixelMask;
 use super::workspace::{Workspace, neighbours};
 

@@ -4,8 +4,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Point3;
-use premio_predict::model::Setups;
 use premio_predict::setup::light::LightSource;
+use premio_predict::setup::setups::Setups;
 use premio_predict::setup::{Setup, SetupError};
 
 fuzz_target!(|bytes: &[u8]| {

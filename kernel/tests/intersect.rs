@@ -4,9 +4,8 @@ use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::intersect::{
-    Branch, RegionOfInterest, SurfaceIntersection, coincidence, intersect,
-};
+use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, coincidence, intersect};
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::number::predicates::Predicates;

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::intersect::RegionOfInterest;
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::surface_pair::{Carrier, Coefficients, PairMeasure, SurfacePair};
 use premio_kernel::number::predicates::{CertifiedDistance, Predicates, Side};

@@ -1,7 +1,12 @@
-//! Structural rules: no dependencies that run backwards, no tolerances outside their place, no
-//! disabled tests, no overlong files.
+//! Structural rules: no dependencies that run backwards or in a circle, no tolerances outside their
+//! place, no disabled tests, no overlong files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
+#[path = "layering/modules.rs"]
+mod modules;
+
+use modules::{Arrow, Modules, circles};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -142,6 +147,50 @@ const STAGES: &[(&str, &[&[&str]])] = &[
     ),
 ];
 
+/// The circles that remain: the crate, the modules that use each other, and the reason.
+const CIRCLES: &[(&str, &[&str], &str)] = &[
+    (
+        "premio",
+        &[
+            "camera",
+            "error",
+            "expression",
+            "mesh",
+            "model",
+            "picture",
+            "predict",
+            "read",
+            "solid",
+            "view",
+            "write",
+        ],
+        "the facade: its types make each other by methods, and one error has the errors of all",
+    ),
+    (
+        "visibility",
+        &[
+            "junction::intersect",
+            "junction::intersect_general",
+            "junction::overlap",
+        ],
+        "pairs of curves: the general case has the types of the others, and these call it",
+    ),
+    (
+        "drawing",
+        &["image_arcs", "once", "supports"],
+        "the arcs of a drawing, their order and the supports on which they are united",
+    ),
+    (
+        "match",
+        &[
+            "verification::part_match",
+            "verification::scoring",
+            "verification::shape_evidence",
+        ],
+        "a match has its scores, and these are computed of the match",
+    ),
+];
+
 /// The number of lines above which a file should be split.
 const LONG: usize = 600;
 
@@ -194,6 +243,82 @@ fn data_flows_down_the_stages() {
             }
         }
     }
+}
+
+#[test]
+fn modules_do_not_use_each_other_in_a_circle() {
+    let mut wrong = String::new();
+    for (folder, _, _) in LAYERS {
+        let arrows = Modules::read(&root().join(folder).join("src")).arrows();
+        let circles = circles(&arrows);
+        for circle in &circles {
+            if !CIRCLES.iter().any(|known| is_known(known, folder, circle)) {
+                let places = circle.iter().map(|arrow| format!("\n    {}", arrow.place));
+                wrong += &format!("\n  {folder}:{}", places.collect::<String>());
+            }
+        }
+        for known in CIRCLES.iter().filter(|known| known.0 == *folder) {
+            let (_, modules, _) = known;
+            let used = circles.iter().any(|circle| is_known(known, folder, circle));
+            assert!(used, "{folder}: there is no circle of {modules:?} any more");
+        }
+    }
+    assert!(wrong.is_empty(), "circles of modules:{wrong}");
+}
+
+/// Whether a circle has no modules but those of an exception.
+fn is_known(known: &(&str, &[&str], &str), folder: &str, circle: &[Arrow]) -> bool {
+    let (crate_folder, modules, _) = known;
+    let is_in = |path: &[String]| {
+        let name = path.join("::");
+        modules
+            .iter()
+            .any(|module| name == *module || name.starts_with(&format!("{module}::")))
+    };
+    *crate_folder == folder
+        && circle
+            .iter()
+            .all(|arrow| is_in(&arrow.from) && is_in(&arrow.to))
+}
+
+#[test]
+fn circles_are_found_through_imports_and_reexports() {
+    let read = |text: &str| {
+        let modules = Modules::from_items(&syn::parse_file(text).unwrap().items);
+        let circles = circles(&modules.arrows());
+        let names = |circle: &Vec<Arrow>| {
+            let names = circle.iter().map(|arrow| arrow.from.join("::"));
+            names
+                .collect::<BTreeSet<_>>()
+                .into_iter()
+                .collect::<Vec<_>>()
+                .join(" ")
+        };
+        circles.iter().map(names).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        read("mod a { use super::b::B; pub struct A; } mod b { pub struct B(super::a::A); }"),
+        ["a b"]
+    );
+    // By the name of a module, a re-export, every name of a module, and a macro.
+    assert_eq!(
+        read(
+            "pub use c::C;
+             mod a { use crate::b; pub fn a() { b::b(); } }
+             mod b { use super::*; pub fn b() { let _ = C; } }
+             mod c { pub struct C; fn c() { assert!(crate::a::a() == ()); } }"
+        ),
+        ["a b c"]
+    );
+    // Modules with a circle inside, and one that tests alone close.
+    assert_eq!(
+        read(
+            "mod a { mod x { use super::y::Y; pub struct X; } mod y { use super::x::X; pub struct Y; } }
+             mod b { use crate::c::C; }
+             mod c { pub struct C; #[cfg(test)] mod tests { use crate::b; } }"
+        ),
+        ["a::x a::y"]
+    );
 }
 
 /// The workspace packages on which a manifest depends, including those of tests.

@@ -5,6 +5,7 @@
 //! finite are errors at their place. [`escape`] writes any text so that a terminal or a format takes it.
 
 mod deserializer;
+mod document;
 pub mod escape;
 mod json;
 mod number;
@@ -12,6 +13,7 @@ mod place;
 mod toml_text;
 mod value;
 
+pub use document::Document;
 pub use number::number;
 pub use place::{LineColumn, nearest};
-pub use value::{Content, Document, Member, TextError, Value};
+pub use value::{Content, Member, TextError, Value};

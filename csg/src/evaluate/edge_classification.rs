@@ -9,9 +9,9 @@
 //! Notation: T is the tangent of the candidate, d the direction of a half sheet away from it, l = T
 //! × d the counterclockwise direction, n the carrier's normal.
 
-use super::EvaluationError;
 use super::arrangement::Arrangement;
 use super::edge_candidates::EdgeCandidate;
+use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use super::membership::Membership;
 use super::radial_order::Spot;
@@ -19,7 +19,7 @@ use super::relevance::CloseCallFilter;
 use super::vertices::VertexCandidate;
 use crate::tree::NodeId;
 use nalgebra::Point3;
-use premio_kernel::brep::assemble::{BoundaryInput, EdgeInput, FaceUse, VertexInput};
+use premio_kernel::brep::boundary_input::{BoundaryInput, EdgeInput, FaceUse, VertexInput};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};

@@ -110,14 +110,14 @@ impl<N: Float> CloseCallFilter<'_, N> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
-    use super::super::arrangement::arrange;
+    use super::super::carrier_intersections::arrange;
     use super::super::halfspaces::HalfSpaceModel;
     use super::super::membership::Membership;
     use super::super::{EvaluationOptions, MAX_ENTITIES, evaluate};
     use super::*;
     use crate::reader::{Format, ReadOptions, read};
     use crate::tree::Tree;
-    use premio_kernel::geometry::intersect::RegionOfInterest;
+    use premio_kernel::geometry::region_of_interest::RegionOfInterest;
     use premio_kernel::number::predicates::Predicates;
 
     const PARTS: [[&str; 2]; 4] = [

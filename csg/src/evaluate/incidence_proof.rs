@@ -7,10 +7,10 @@
 //! carrier contains a curve if it passes through more points of it than it could otherwise
 //! (Bézout).
 
-use super::EvaluationError;
 use super::arrangement::Arrangement;
 use super::distinct_surfaces::Source;
 use super::edge_candidates::EdgeCandidate;
+use super::error::EvaluationError;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;

@@ -1,11 +1,11 @@
 //! Frustums that are nearly cylinders, with an apex that is far away or, within the resolution, at
 //! infinity.
 
-use super::EvaluationError;
+use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use crate::primitive::Primitive;
 use crate::tree::{PlacedPrimitive, Tree};
-use premio_kernel::geometry::intersect::RegionOfInterest;
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;

@@ -6,9 +6,9 @@
 //! resolution. Two that coincide within it need not be tangent in the piece, and their bends there
 //! say nothing about where they separate.
 
-use super::EvaluationError;
 use super::arrangement::Arrangement;
 use super::edge_candidates::EdgeCandidate;
+use super::error::EvaluationError;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::frame::perpendicular;

@@ -5,6 +5,7 @@
 //! which the tree leaves a choice. Decisions between other carriers change nothing there.
 
 use super::arrangement::Arrangement;
+use super::close_calls::Between;
 use super::halfspaces::{HalfSpace, HalfSpaceModel};
 use super::membership::Membership;
 use super::vertices::VertexCandidate;
@@ -12,24 +13,8 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::{CloseCall, Compare, Predicates, Side};
+use premio_kernel::number::predicates::{Compare, Predicates, Side};
 use rstar::AABB;
-
-/// The entities between which a close call lies.
-#[derive(Clone, Debug)]
-pub(super) enum Between {
-    /// Two corners.
-    Corners([usize; 2]),
-    /// A corner and a point, defined by these carriers, that was merged with it.
-    CornerAndPoint(usize, Vec<usize>),
-    /// A curve, by its index, and a carrier.
-    Curve(usize, usize),
-    /// Two carriers.
-    Carriers([usize; 2]),
-}
-
-/// A close call, not yet listed.
-pub(super) type Unlisted = (CloseCall, Between);
 
 /// Determines which primitives matter at a point.
 pub(super) struct CloseCallFilter<'a, N: Float = f64> {

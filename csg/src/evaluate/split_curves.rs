@@ -1,9 +1,9 @@
 //! Splits curves at their intersections with the carriers of all faces close to them, and at points
 //! known beforehand.
 
-use super::arrangement::{Arrangement, Cut, IntersectionCurve, common};
+use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pass};
+use super::close_calls::{Between, Unlisted};
 use super::halfspaces::HalfSpaceModel;
-use super::relevance::{Between, Unlisted};
 use super::vertices::VertexMerger;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
@@ -16,14 +16,6 @@ use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::roots::{Root, RootKind};
 use rstar::AABB;
 use std::collections::HashMap;
-
-/// The smallest distance of two passages of a curve through one corner, in radians or units.
-const CLOSE_PASS: f64 = 1.0 / (1 << 16) as f64;
-
-/// Whether two parameters at one corner belong to the same passage.
-pub(super) fn is_one_pass<N: Float>(t: N, other: N) -> bool {
-    (t - other).abs().is_short_of(N::from_f64(CLOSE_PASS))
-}
 
 /// A contact of such a high order that a long piece is within the resolution.
 pub(super) struct Wide<N: Float = f64> {

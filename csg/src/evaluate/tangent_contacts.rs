@@ -11,7 +11,7 @@ use premio_kernel::geometry::curve_surface::lies_on;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use premio_kernel::number::roots::probes;
+use premio_kernel::number::probes::probes;
 
 impl<N: Float> Arrangement<N> {
     /// Moves contacts to curves that run inside their strips.

@@ -1,6 +1,6 @@
 //! Vertex candidates: the points at which curves are split, with coincident points merged.
 
-use super::relevance::{Between, Unlisted};
+use super::close_calls::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;

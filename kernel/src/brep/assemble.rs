@@ -4,15 +4,16 @@
 //! the face stays on the left. Faces: loops of one surface that bound one region (`region`). Shells
 //! and solids: `shells`. Points where several of these touch: `non_manifold_points`.
 
+use super::assembly_error::AssemblyError;
+use super::boundary_input::{BoundaryInput, FaceUse, Names};
 use super::non_manifold_points::touches;
-use super::region::{RegionError, regions};
+use super::region::regions;
 use super::shells::{bind_shells, fans};
 use super::surface_path::DirectedArc;
 use super::topology::{
     Coedge, CoedgeId, Edge, EdgeId, Face, FaceId, Loop, LoopId, Sense, ShellId, Topology, VertexId,
 };
 use super::{Brep, BrepGeometry, EdgeGeometry, FaceGeometry};
-use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
@@ -21,93 +22,6 @@ use crate::number::float::Float;
 use crate::number::predicates::{Compare, Predicates};
 use nalgebra::Point3;
 use std::collections::{BTreeMap, HashMap};
-
-/// A face at an edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FaceUse {
-    /// The index of the surface.
-    pub surface: usize,
-    /// Whether the outward normal is that of the surface.
-    pub outward: Sense,
-    /// Whether the face's loop runs in the edge's direction.
-    pub sense: Sense,
-}
-
-/// An edge with the faces around it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EdgeInput<N: Float = f64> {
-    /// The index of the curve.
-    pub curve: usize,
-    /// The range of the parameter, increasing.
-    pub range: [N; 2],
-    /// The indices of the points at both ends; none for a closed edge.
-    pub ends: Option<[usize; 2]>,
-    /// The faces, counterclockwise about the curve's direction. Consecutive pairs enclose material.
-    pub face_uses: Vec<FaceUse>,
-    /// Whether two faces meet smoothly.
-    pub smooth: bool,
-    /// The indices of the points that the edge passes through.
-    pub passes: Vec<usize>,
-}
-
-/// A point where curves end or cross, or where a curve is tangent to a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VertexInput<N: Float = f64> {
-    /// The location.
-    pub place: Point3<N>,
-    /// The indices of all surfaces through it.
-    pub surfaces: Vec<usize>,
-    /// The pairs of surfaces for which it is a singular point: a tangency, a self-crossing of their
-    /// curve, or an apex.
-    pub nodes: Vec<[usize; 2]>,
-}
-
-/// All edges of a boundary, and the closed surfaces that are faces without edges.
-#[derive(Clone, Debug, Default)]
-pub struct BoundaryInput<N: Float = f64> {
-    /// The surfaces.
-    pub surfaces: Vec<Surface<N>>,
-    /// The curves.
-    pub curves: Vec<Curve<N>>,
-    /// The points.
-    pub points: Vec<VertexInput<N>>,
-    /// The edges.
-    pub edges: Vec<EdgeInput<N>>,
-    /// Whole surfaces, with the sense of their outward normal.
-    pub whole: Vec<(usize, Sense)>,
-}
-
-/// Why edges do not form a boundary. Each is a failure of this program for the part.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AssemblyError {
-    /// The coedges of a face do not close at a vertex.
-    #[error("the boundary of a face is open at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
-    OpenLoop {
-        /// The vertex.
-        place: [f64; 3],
-    },
-    /// The order of a face's edges around a vertex is ambiguous.
-    #[error("the edges around ({:.9}, {:.9}, {:.9}) cannot be put in order", place[0], place[1], place[2])]
-    AmbiguousVertex {
-        /// The vertex.
-        place: [f64; 3],
-    },
-    /// The loops of a surface cannot be grouped into faces.
-    #[error(transparent)]
-    Region(#[from] RegionError),
-    /// A shell encloses no volume that can be distinguished from rounding.
-    #[error("a shell near ({:.9}, {:.9}, {:.9}) encloses no volume above rounding", place[0], place[1], place[2])]
-    ZeroVolumeShell {
-        /// A point of it.
-        place: [f64; 3],
-    },
-    /// It cannot be determined in which solid a void lies.
-    #[error("it cannot be determined which solid contains the void at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]
-    OrphanVoid {
-        /// A point of the void's boundary.
-        place: [f64; 3],
-    },
-}
 
 /// A small sphere around a vertex on which the edges there are ordered.
 struct Around {
@@ -175,16 +89,6 @@ pub fn assemble<N: Float>(
         brep.topology.touches.push(touch);
     }
     Ok(brep)
-}
-
-/// The ids of the entities made from the input.
-pub(super) struct Names {
-    /// The partner of each coedge across the material at its edge.
-    pub partner: Vec<CoedgeId>,
-    /// The vertex id of a point.
-    pub vertex_of: HashMap<usize, VertexId>,
-    /// The surface index of an input surface.
-    pub surface_of: HashMap<usize, usize>,
 }
 
 /// A face: its group and its loops.

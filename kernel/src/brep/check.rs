@@ -2,6 +2,7 @@
 
 use super::Brep;
 use super::cycle_basis;
+use super::end_gaps::gaps_at_ends;
 use super::face_integrals::{FaceArea, FaceIntegrals};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use crate::geometry::vector::Length;
@@ -107,19 +108,6 @@ pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<(Point3<N>, 
 /// Whether merging of coincident entities accounts for a distance.
 fn is_accounted<N: Float>(distance: N, resolution: N) -> bool {
     distance.is_within(N::from_f64(PLAY) * resolution)
-}
-
-/// The ends of an edge: the vertex, the point on the edge, and their distance.
-pub(super) fn gaps_at_ends<N: Float>(
-    brep: &Brep<N>,
-    id: EdgeId,
-) -> impl Iterator<Item = (VertexId, Point3<N>, N)> {
-    let range = brep.range(id);
-    let ends = brep.topology.edge(id).ends.into_iter().flatten();
-    ends.zip(range).map(move |(vertex, t)| {
-        let place = brep.curve(id).point(t);
-        (vertex, place, (brep.point(vertex) - place).length())
-    })
 }
 
 /// The point of an edge farthest from a face's surface, and its distance.

@@ -8,7 +8,7 @@ mod interior;
 
 use super::Brep;
 use super::arcs::Arcs;
-use super::check::gaps_at_ends;
+use super::end_gaps::gaps_at_ends;
 use super::surface_path::{CrossingSense, DirectedArc, SurfacePath};
 use super::topology::{FaceId, Sense};
 use crate::geometry::bounds::Aabb;

@@ -6,7 +6,7 @@
 //! Only the faces that contain them in their interior remain to be found.
 
 use super::Brep;
-use super::assemble::{BoundaryInput, Names};
+use super::boundary_input::{BoundaryInput, Names};
 use super::locate::{Locator, PointLocation};
 use super::shells::Fans;
 use super::topology::{EdgeId, FaceId, NonManifoldPoint};

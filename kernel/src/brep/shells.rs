@@ -2,7 +2,7 @@
 //! edge are one shell; an outer shell and the voids in it are one solid.
 
 use super::Brep;
-use super::assemble::AssemblyError;
+use super::assembly_error::AssemblyError;
 use super::face_integrals::{shell_volume, size};
 use super::point_in_solid::Closed;
 use super::topology::{CoedgeId, FaceId, Lump, LumpId, Shell, ShellId, Topology};

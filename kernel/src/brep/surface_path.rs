@@ -16,7 +16,7 @@ use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::curve_plane::{line_intersections, section_roots, surface_roots};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
-use crate::geometry::torus_curve::TorusParameter;
+use crate::geometry::torus_parameter::TorusParameter;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;

@@ -13,7 +13,7 @@
 //! a bound of the remainder.
 
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials};
-use super::torus_curve::TorusParameter;
+use super::torus_parameter::TorusParameter;
 use crate::number::analytic::Analytic;
 use crate::number::float::Float;
 use crate::number::interval::Interval;

@@ -5,11 +5,12 @@ use super::curve::Curve;
 use super::implicit_on_curve::ImplicitOnCurve;
 use super::surface::Surface;
 use super::vector::Length;
-use crate::number::f64_filter::F64Filter;
 use crate::number::float::Float;
+use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Function, Root, RootKind, Roots, isolate, isolate_closely, probes};
+use crate::number::probes::probes;
+use crate::number::roots::{Root, RootKind, Roots, isolate, isolate_closely};
 use nalgebra::Point3;
 use std::borrow::Cow;
 

@@ -4,7 +4,8 @@ use super::curve::Curve;
 use super::frame::Frame;
 use super::quadric_curve::{Height, QuadricCurve, Ruled, Sweep};
 use super::surface::Surface;
-use super::torus_curve::{TorusCurve, TorusParameter};
+use super::torus_curve::TorusCurve;
+use super::torus_parameter::TorusParameter;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 

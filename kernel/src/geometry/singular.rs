@@ -8,8 +8,8 @@ mod leading_form;
 
 use super::bivariate_trig_poly::Partials;
 use super::blow_up::Chart;
-use super::trace::grid::{Cell, regular_grid};
-use super::trace::{Tracer, Unresolved, deepest, near};
+use super::torus_grid::{Cell, regular_grid};
+use super::tracer::{Tracer, Unresolved, deepest, near};
 use crate::number::float::Float;
 use crate::number::predicates::CLOSE;
 

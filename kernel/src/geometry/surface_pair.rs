@@ -4,7 +4,7 @@
 //! and from the exact coefficients with more bits where those are inconclusive. The constructions
 //! use the decisions and compute in f64. Directions need not have unit length.
 
-use super::intersect::RegionOfInterest;
+use super::region_of_interest::RegionOfInterest;
 use super::surface::Surface;
 use crate::number::enclosable::Enclosable;
 use crate::number::float::Float;

@@ -6,26 +6,16 @@
 //! the other, inside a rectangle in which the slope is bounded, so that every point is one
 //! well-conditioned root. Close to a singular point the graph is that of κ over σ in a [`Chart`].
 
-mod across;
-
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Section};
 use super::blow_up::{Chart, DEGREE};
 use super::surface::Torus;
+use super::torus_parameter::{TorusParameter, arrange};
 use crate::number::analytic::Analytic;
 use crate::number::bisection::bisect;
 use crate::number::float::Float;
 use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
 use nalgebra::Point3;
-
-/// The angle that a segment is parameterised by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TorusParameter {
-    /// θ, about the axis.
-    Around,
-    /// φ, about the tube.
-    Tube,
-}
 
 /// A graph of one angle over the other, or of κ over σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +152,7 @@ fn run_along<S>(axis: TorusParameter, x: S, y: S, at: impl Fn(S, S) -> Partials<
 
 impl<N: Float> TorusCurveSegment<N> {
     /// The cubic Hermite interpolant of both ends and slopes.
-    fn hermite(&self, x: N) -> N {
+    pub(super) fn hermite(&self, x: N) -> N {
         let length = self.to - self.from;
         let [y0, y1] = self.ends;
         if length == N::ZERO {
@@ -433,7 +423,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The running coordinate of a segment at the angles (θ, φ).
-    fn folded(&self, s: &TorusCurveSegment<N>, theta: N, phi: N) -> N {
+    pub(super) fn folded(&self, s: &TorusCurveSegment<N>, theta: N, phi: N) -> N {
         match self.chart(s) {
             None => {
                 let [x, _] = arrange(s.axis, theta, phi);
@@ -455,18 +445,11 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// (θ, φ) on a segment, at a fraction of its length.
-    fn angles_on(&self, s: &TorusCurveSegment<N>, tau: N) -> [N; 2] {
+    pub(super) fn angles_on(&self, s: &TorusCurveSegment<N>, tau: N) -> [N; 2] {
         let x = s.from + tau * (s.to - s.from);
         let y = s.solve(self.form(s), x);
         let angles = self.unfolded::<N>(s, Jet::constant(x), Jet::constant(y));
         angles.map(|angle| angle.v)
-    }
-}
-
-fn arrange<T>(axis: TorusParameter, run: T, other: T) -> [T; 2] {
-    match axis {
-        TorusParameter::Around => [run, other],
-        TorusParameter::Tube => [other, run],
     }
 }
 

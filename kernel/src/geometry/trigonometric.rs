@@ -2,11 +2,11 @@
 
 use crate::geometry::vector::solution;
 use crate::number::analytic::{Analytic, harmonic, harmonic_slope};
-use crate::number::f64_filter::F64Filter;
 use crate::number::float::Float;
+use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::roots::{Function, RootKind, Roots, isolate};
+use crate::number::roots::{RootKind, Roots, isolate};
 use nalgebra::{SMatrix, SVector};
 
 /// A trigonometric polynomial of degree one: constant, cosine, sine.

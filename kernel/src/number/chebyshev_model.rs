@@ -12,9 +12,10 @@
 
 use super::analytic::Analytic;
 use super::float::Float;
+use super::function::Function;
 use super::interval::Interval;
 use super::jet::Jet;
-use super::roots::{Function, probes};
+use super::probes::probes;
 
 /// The number of coefficients. More of them would lose digits to cancellation between powers; this
 /// number loses 18.

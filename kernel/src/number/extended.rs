@@ -4,7 +4,8 @@ mod circular;
 
 use super::analytic::{Analytic, sinc_jet};
 use super::float::Float;
-use super::quadrature::GaussRules;
+use super::gauss_rules::GaussRules;
+use super::legendre::gauss_rules;
 use super::rational::Rational;
 use ::f256::{consts, f256};
 use dashu::base::{BitTest, Sign, Signed, UnsignedAbs};
@@ -182,7 +183,7 @@ impl Float for F237 {
         // Halves that agree to 2^-64 differ from the integral by far less, and results are reported
         // in f64.
         static RULES: LazyLock<GaussRules<F237>> =
-            LazyLock::new(|| GaussRules::new(16, F237(power(-64))));
+            LazyLock::new(|| gauss_rules(16, F237(power(-64))));
         &RULES
     }
 

@@ -1,12 +1,15 @@
-//! The floating-point types in which coordinates are stored.
+//! The floating-point types in which coordinates are stored, and the scalar type of the generic
+//! formulas for surfaces and curves. Each of the two traits names the other.
+//!
+//! One formula has three readings. A [`Float`] gives a value, an
+//! [`Interval`](super::interval::Interval) a certified range, and a [`Jet`](super::jet::Jet) of
+//! either adds two derivatives.
 
-use super::analytic::Analytic;
-use super::quadrature::GaussRules;
-use super::rational::{Rational, from_f64, to_f64};
+use super::gauss_rules::GaussRules;
+use super::rational::Rational;
 use std::cmp::Ordering;
 use std::iter::Sum;
-use std::ops::{AddAssign, Div, DivAssign, MulAssign, SubAssign};
-use std::sync::LazyLock;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A floating-point number of some precision: a coordinate, a length, an angle in radians.
 ///
@@ -108,83 +111,52 @@ pub trait Float:
     fn acosh(self) -> Self;
 }
 
-/// Forwards functions to the inherent ones of the number type.
-macro_rules! own {
-    ($number:ty: $($name:ident($($argument:ident),*)),* $(,)?) => {
-        $(#[inline]
-        fn $name(self $(, $argument: Self)*) -> Self {
-            <$number>::$name(self $(, $argument)*)
-        })*
-    };
+/// A number type on which the geometric formulas can be evaluated.
+pub trait Analytic:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// The floating-point type in which it is computed.
+    type Float: Float;
+    /// The constant `x`.
+    fn constant(x: Self::Float) -> Self;
+    /// The product with the constant `k`.
+    fn scale(self, k: Self::Float) -> Self;
+    /// The product with an f64.
+    fn times(self, k: f64) -> Self {
+        self.scale(Self::Float::from_f64(k))
+    }
+    /// The constant `x`, given as an f64.
+    fn constant_f64(x: f64) -> Self {
+        Self::constant(Self::Float::from_f64(x))
+    }
+    /// The square; on intervals it is tighter than a product.
+    fn square(self) -> Self;
+    /// The quotient; the entire line if an interval divisor contains zero.
+    fn over(self, divisor: Self) -> Self;
+    /// The square root; negative values are clamped to zero.
+    fn root(self) -> Self;
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// Sine and cosine of twice the angle, from `at`, the sine and cosine of the angle.
+    fn twice(self, _at: (Self, Self)) -> (Self, Self) {
+        self.times(2.0).sin_cos()
+    }
+    /// Hyperbolic sine and cosine.
+    fn sinh_cosh(self) -> (Self, Self);
+    /// sin x / x, for 0 <= x <= pi.
+    fn sinc(self) -> Self;
+    /// The trigonometric polynomial of degree two of this angle; `at` are the sine and cosine of
+    /// the angle. On intervals it is tighter than [`harmonic`] where terms cancel.
+    fn harmonic(self, k: &[Self::Float; 5], at: (Self, Self)) -> Self {
+        harmonic(k, at)
+    }
+    /// Whether it certainly has the same sign as `o`, so that their sum does not cancel.
+    fn is_like(self, o: Self) -> bool;
 }
 
-impl Float for f64 {
-    const ZERO: Self = 0.0;
-    const HALF: Self = 0.5;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-    const PI: Self = std::f64::consts::PI;
-    const TAU: Self = std::f64::consts::TAU;
-    const EPSILON: Self = f64::EPSILON;
-    const MIN_POSITIVE: Self = f64::MIN_POSITIVE;
-    const MAX: Self = f64::MAX;
-    const INFINITY: Self = f64::INFINITY;
-    const NEG_INFINITY: Self = f64::NEG_INFINITY;
-    const NAN: Self = f64::NAN;
-    const SINC_TERMS: u32 = 9;
-    const ROUNDING: Self = 16.0 * f64::EPSILON;
-    const IS_DOUBLE: bool = true;
-
-    fn rules() -> &'static GaussRules<Self> {
-        static RULES: LazyLock<GaussRules<f64>> =
-            LazyLock::new(|| GaussRules::new(10, 64.0 * f64::ROUNDING));
-        &RULES
-    }
-    #[inline]
-    fn from_f64(x: f64) -> Self {
-        x
-    }
-    #[inline]
-    fn below(self) -> f64 {
-        self
-    }
-    #[inline]
-    fn nearest(x: &Rational) -> Self {
-        to_f64(x)
-    }
-    #[inline]
-    fn exact(self) -> Option<Rational> {
-        from_f64(self)
-    }
-    #[inline]
-    fn rounded(self) -> f64 {
-        self
-    }
-    #[inline]
-    fn bits(self) -> [u64; 4] {
-        [self.to_bits(), 0, 0, 0]
-    }
-    #[inline]
-    fn index(self) -> usize {
-        self as usize
-    }
-    own!(f64: abs(), signum(), copysign(sign), max(o), min(o), clamp(lo, hi), floor(), ceil(),
-        round(), fract(), rem_euclid(divisor), sqrt(), hypot(o), sin(), cos(), sinh(), cosh(),
-        acos(), atan(), atan2(x), asinh(), acosh());
-    #[inline]
-    fn total_cmp(&self, o: &Self) -> Ordering {
-        f64::total_cmp(self, o)
-    }
-    #[inline]
-    fn is_nan(self) -> bool {
-        f64::is_nan(self)
-    }
-    #[inline]
-    fn is_finite(self) -> bool {
-        f64::is_finite(self)
-    }
-    #[inline]
-    fn powi(self, n: i32) -> Self {
-        f64::powi(self, n)
-    }
+/// A trigonometric polynomial of degree two: k0 + k1 cos + k2 sin + k3 cos 2u + k4 sin 2u.
+pub fn harmonic<S: Analytic>(k: &[S::Float; 5], (sin, cos): (S, S)) -> S {
+    let cos2 = cos.square().times(2.0) - S::constant_f64(1.0);
+    let sin2 = (sin * cos).times(2.0);
+    S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])
 }

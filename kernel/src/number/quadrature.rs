@@ -2,59 +2,10 @@
 //! f64 where it is accurate enough.
 
 use super::float::Float;
-use super::roots::probes;
+use super::gauss_rules::GaussRule;
+use super::probes::probes;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-/// The nodes in (-1, 1) and the weights of a quadrature rule.
-pub type GaussRule<N = f64> = Vec<(N, N)>;
-
-/// The quadrature rules of a precision.
-#[derive(Debug)]
-pub struct GaussRules<N = f64> {
-    /// For smooth functions over about a quarter turn.
-    pub smooth: GaussRule<N>,
-    /// Two rules for functions that are nearly polynomials. If they agree, the second is used.
-    pub short: [GaussRule<N>; 2],
-    /// The relative difference of two sums below which the integral has converged.
-    pub settled: N,
-}
-
-impl<N: Float> GaussRules<N> {
-    /// The rules, with `smooth` nodes in the first.
-    pub(super) fn new(smooth: usize, settled: N) -> Self {
-        Self {
-            smooth: gauss(smooth),
-            short: [6, 10].map(gauss),
-            settled,
-        }
-    }
-}
-
-/// The rule with `n` nodes, exact for polynomials of degree up to 2n - 1. The nodes are the roots
-/// of the Legendre polynomial, found by Newton's method.
-fn gauss<N: Float>(n: usize) -> GaussRule<N> {
-    let size = N::from_f64(n as f64);
-    let legendre = |x: N| {
-        let (mut a, mut b) = (N::ONE, x);
-        for k in 2..=n {
-            let k = N::from_f64(k as f64);
-            (a, b) = (b, ((N::TWO * k - N::ONE) * x * b - (k - N::ONE) * a) / k);
-        }
-        (b, size * (x * b - a) / (x * x - N::ONE))
-    };
-    (0..n)
-        .map(|i| {
-            let mut x = (N::PI * N::from_f64(i as f64 + 0.75) / (size + N::HALF)).cos();
-            for _ in 0..8 {
-                let (p, d) = legendre(x);
-                x -= p / d;
-            }
-            let (_, d) = legendre(x);
-            (x, N::TWO / ((N::ONE - x * x) * d * d))
-        })
-        .collect()
-}
 
 /// The integral of a vector of functions over [a, b] by one rule.
 pub fn integral<N: Float, const D: usize>(
@@ -248,6 +199,7 @@ fn off<N: Float, const D: usize>(whole: [N; D], sum: [N; D], matters: &[N; D]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::legendre::gauss;
     use std::f64::consts::PI;
 
     #[test]

@@ -6,15 +6,17 @@
 //! its certified sign, within it as a tangency. Other intervals are halved. The values are
 //! distances, so the resolution is the part's.
 
+pub use super::function::Function;
+
 use super::analytic::Analytic;
 use super::bisection::{bisect, bisect_newton};
 use super::chebyshev_model::ChebyshevModel;
-use super::f64_filter::F64Filter;
 use super::float::Float;
 use super::interval::Interval;
 use super::jet::Jet;
 use super::monotone_samples::MonotoneSamples;
 use super::predicates::CLOSE;
+use super::probes::probes;
 
 /// The multiplicity of a root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,55 +88,9 @@ const OUTSIDE: f64 = 1.0 / (1 << 10) as f64;
 /// this factor counts as within it. Otherwise rounding would break one cluster into several.
 const FRINGE: f64 = 1.0 + 1.0 / 64.0;
 
-/// A function whose roots are sought.
-pub trait Function<N: Float = f64> {
-    /// The certified ranges of the value and of two derivatives over an interval.
-    fn over(&self, t: Interval<N>) -> Jet<Interval<N>>;
-
-    /// A certified range of the value alone, if it is cheaper.
-    fn reach(&self, _t: Interval<N>) -> Interval<N> {
-        Interval::ENTIRE
-    }
-
-    /// An f64 filter over a piece, for a function in extended precision that f64 follows.
-    fn roughly(&self, _piece: [N; 2]) -> Option<F64Filter<'_>> {
-        None
-    }
-
-    /// The value and two derivatives at a point, uncertified.
-    fn at(&self, t: N) -> Jet<N> {
-        let j = self.over(Interval::point(t));
-        Jet {
-            v: j.v.mid(),
-            d: j.d.mid(),
-            dd: j.dd.mid(),
-        }
-    }
-
-    /// The value at a point, uncertified.
-    fn value(&self, t: N) -> N {
-        self.at(t).v
-    }
-}
-
-impl<N: Float, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
-    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
-        self(t)
-    }
-}
-
 /// The relative width from which on second-order Taylor bounds are used. Most roots are isolated
 /// before; next to a contact of high order halving continues, and tighter bounds pay.
 const SMALL: f64 = 1.0 / 16.0;
-
-/// The number of probes: more than twice the number of zeros that any function along the curves can
-/// have. A function that is within the resolution at so many probes is so in between.
-const PROBES: u32 = 67;
-
-/// Fractions of a range by golden-section steps: the first few are already far from each other.
-pub fn probes<N: Float>() -> impl Iterator<Item = N> {
-    (1..=PROBES).map(|k| (N::whole(k) * N::from_f64(0.618_033_988_749_895)).fract())
-}
 
 /// The number of halvings after which, and after each doubling of which, a polynomial model of the
 /// rest of the piece is tried.

@@ -1,10 +1,18 @@
 //! Division of edges into chords, once for all faces.
 
 use super::Accuracy;
-use super::face_triangulation::Division;
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId};
 use nalgebra::{Point3, Vector3};
+
+/// A parameter at which an edge must be divided, because one of its chords crosses another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Division {
+    /// The edge.
+    pub edge: EdgeId,
+    /// The parameter.
+    pub t: f64,
+}
 
 /// A point of a divided edge.
 #[derive(Clone, Copy, Debug, PartialEq)]

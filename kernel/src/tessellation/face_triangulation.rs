@@ -4,7 +4,7 @@
 use super::Accuracy;
 use super::charts::{Chart, Seams, signed_turn};
 use super::chord_test::ChordTest;
-use super::edges::{Node, Polylines};
+use super::edges::{Division, Node, Polylines};
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId, Sense};
 use crate::geometry::surface::{Surface, Torus};
@@ -22,15 +22,6 @@ use std::f64::consts::TAU;
 struct Chord {
     edge: EdgeId,
     first: usize,
-}
-
-/// A parameter at which an edge must be divided, because one of its chords crosses another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Division {
-    /// The edge.
-    pub edge: EdgeId,
-    /// The parameter.
-    pub t: f64,
 }
 
 /// A point in the chart.

@@ -1,7 +1,7 @@
 //! What a detector found of each arc: edge pixels assigned to the arcs whose images they are.
 
-use super::Criteria;
 use super::arc_raster::ArcRaster;
+use crate::setup::criteria::Criteria;
 use premio_detect::{Detection, Detector, EdgePixel};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

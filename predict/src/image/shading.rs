@@ -4,7 +4,7 @@ use crate::image_arcs::lit_scene::StageError;
 use crate::image_arcs::pierce::front;
 use crate::image_arcs::{LitScene, RegionSample};
 use crate::prepared_part::PreparedPart;
-use crate::reflectance::{GREEN, Material, Polarisation, SurfaceFinish};
+use crate::reflectance::{GREEN, Polarisation, SurfaceFinish};
 use crate::setup::light::LightSource;
 use crate::setup::{Conditions, SetupError};
 use nalgebra::{Point2, Point3, Vector3};
@@ -52,7 +52,7 @@ impl Beam {
         let materials = conditions.materials(source.wavelength)?;
         Ok(Self {
             polarisation: Polarisation::new(parallel, perpendicular).ok_or_else(negative)?,
-            surfaces: materials.iter().map(Material::surface).collect(),
+            surfaces: materials.iter().map(SurfaceFinish::new).collect(),
         })
     }
 }
@@ -107,7 +107,7 @@ impl<'s> Shading<'s> {
             background: conditions.background,
             gain: conditions.sensor.gain(strength),
             beams: beams?,
-            surfaces: materials.iter().map(Material::surface).collect(),
+            surfaces: materials.iter().map(SurfaceFinish::new).collect(),
         })
     }
 

@@ -1,10 +1,9 @@
-//! The curves that divide an image into regions: the visible pieces of contours, the boundaries of
-//! cast shadows and the outlines of highlights.
+//! The curves that divide an image into regions: the visible pieces of contours and the boundaries
+//! of cast shadows. `highlight` adds the outlines of highlights.
 
 pub(crate) mod arc;
 pub(crate) mod crossings;
 pub(crate) mod flatten;
-pub(crate) mod highlight;
 pub mod lit_scene;
 pub(crate) mod pierce;
 pub(crate) mod regions;

@@ -5,9 +5,9 @@ use super::record::{
     Aspect, Attributes, Codetection, DescriptionRecord, FeatureRecord, ModelHead, NO_DIGEST, Rate,
     Record, RelationRecord, SCHEMA,
 };
-use super::setups::Setups;
 use super::summary::MAX_PAIRED;
 use crate::image_arcs::ArcSource;
+use crate::setup::setups::Setups;
 use premio_kernel::brep::Brep;
 use premio_text::number;
 

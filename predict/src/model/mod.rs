@@ -9,8 +9,6 @@ pub mod file;
 pub mod information;
 pub mod observation;
 pub mod record;
-pub mod setups;
 pub mod summary;
 
 pub use observation::{Observation, observe};
-pub use setups::Setups;

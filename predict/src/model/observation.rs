@@ -1,12 +1,12 @@
 //! The observation of a part in one setup.
 
 use super::information::{deviation, frame, information};
-use super::setups::Setups;
 use crate::feature::detected_arc::DetectionState;
 use crate::feature::group::chains;
 use crate::feature::junction::{JunctionForm, Nodes, PredictedJunction, junctions};
 use crate::image_arcs::ArcSource;
 use crate::prediction::{DetectionOutcome, PredictedImage};
+use crate::setup::setups::Setups;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! The format of a model: one record per line (`premio.model/1`).
 
 use super::observation::{ATTRIBUTES, RelationKind};
-use super::setups::Setups;
 use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
 use crate::image_arcs::ArcSource;
+use crate::setup::setups::Setups;
 use crate::statistics::{CredibleInterval, DependenceTree, Moments, Proportion, Smoothing};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,7 +1,6 @@
 //! The constants of a surface's material in the physical object model.
 
-use super::{Optics, Polarisation, Reflectance, SurfaceFinish};
-use nalgebra::Vector3;
+use super::Optics;
 use premio_text::number;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -142,23 +141,6 @@ impl Material {
         self.0
             .diffuse
             .unwrap_or_else(|| self.optics().normal() * FRAC_1_PI)
-    }
-
-    /// The material prepared for the evaluation in many directions.
-    pub fn surface(&self) -> SurfaceFinish {
-        SurfaceFinish::new(self)
-    }
-
-    /// [`SurfaceFinish::reflectance`] of one set of directions.
-    pub fn reflectance(
-        &self,
-        normal: &Vector3<f64>,
-        light: &Vector3<f64>,
-        viewer: &Vector3<f64>,
-        polarisation: Polarisation,
-    ) -> Reflectance {
-        self.surface()
-            .reflectance(normal, light, viewer, polarisation)
     }
 }
 

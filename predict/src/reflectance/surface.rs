@@ -25,7 +25,8 @@ pub struct SurfaceFinish {
 }
 
 impl SurfaceFinish {
-    pub(super) fn new(material: &Material) -> Self {
+    /// The surface of a material.
+    pub fn new(material: &Material) -> Self {
         let constants = material.constants();
         let divisor = match constants.form {
             SpecularForm::Normalised => 4.0 * PI,

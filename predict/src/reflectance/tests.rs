@@ -204,7 +204,7 @@ fn the_surface_is_the_product_of_its_terms_and_reciprocal() {
             ..constants()
         };
         let material = Material::new(with).unwrap();
-        let found = material.reflectance(&n, &l, &v, light_of);
+        let found = SurfaceFinish::new(&material).reflectance(&n, &l, &v, light_of);
         let h = (l + v).normalize();
         let f = material.optics().fresnel(h.dot(&l)).reflectivity(light_of);
         let g = attenuation(h.z, v.z, l.z, h.dot(&v));
@@ -212,7 +212,7 @@ fn the_surface_is_the_product_of_its_terms_and_reciprocal() {
         assert!((found.specular - expected).abs() <= 1e-11 * expected.max(1e-12));
         let diffuse = found.total - found.specular;
         assert!((diffuse - 0.25 * material.diffuse()).abs() < 1e-12 * found.total.max(1.0));
-        let swapped = material.reflectance(&n, &v, &l, light_of);
+        let swapped = SurfaceFinish::new(&material).reflectance(&n, &v, &l, light_of);
         assert!((found.total - swapped.total).abs() <= 1e-14 * found.total);
     }
 }
@@ -254,7 +254,7 @@ fn no_more_light_is_reflected_than_comes() {
             form,
             ..constants()
         };
-        Material::new(with).unwrap().surface()
+        SurfaceFinish::new(&Material::new(with).unwrap())
     };
     for m in [0.001, 0.02, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0] {
         for theta in [0.0, 0.3, 0.7, 1.0, 1.2, 1.4, 1.5, 1.56] {
@@ -270,7 +270,7 @@ fn no_more_light_is_reflected_than_comes() {
 
 #[test]
 fn nothing_comes_from_behind_and_nothing_is_infinite() {
-    let surface = Named::Steel.material(GREEN).unwrap().surface();
+    let surface = SurfaceFinish::new(&Named::Steel.material(GREEN).unwrap());
     let n = Vector3::z();
     let ask = |l: Vector3<f64>, v: Vector3<f64>| {
         surface.reflectance(&n, &l, &v, Polarisation::UNPOLARISED)

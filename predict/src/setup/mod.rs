@@ -3,13 +3,16 @@
 //! Lengths are in the part's unit and frame, but for the sensor's, which are millimetres. Radiances
 //! share one arbitrary unit: what a light gives times its solid angle, per steradian.
 
+pub mod criteria;
 pub mod light;
 pub mod sensor;
+pub mod setup_sphere;
 mod setup_toml;
+pub mod setups;
 pub mod viewpoint;
 
-use crate::feature::Criteria;
 use crate::reflectance::{Constants, GREEN, Material, Named};
+use criteria::Criteria;
 use light::Light;
 use premio_detect::{Detector, DetectorError};
 use premio_text::{Content, Document, TextError, number};

@@ -1,12 +1,11 @@
 //! The TOML form of setups.
 
+use super::criteria::Criteria;
 use super::light::Light;
 use super::sensor::Sensor;
+use super::setup_sphere::SetupSphere;
 use super::viewpoint::Viewpoint;
 use super::{Conditions, FacesFinish, Finish, Setup, SetupError};
-use crate::feature::Criteria;
-use crate::model::Setups;
-use crate::model::setups::SetupSphere;
 use premio_detect::Detector;
 use premio_text::Document;
 use serde::Deserialize;
@@ -17,9 +16,9 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct SetupToml {
     seed: Option<u64>,
-    camera: Option<Viewpoint>,
+    pub(super) camera: Option<Viewpoint>,
     #[serde(default, rename = "light")]
-    lights: Vec<Light>,
+    pub(super) lights: Vec<Light>,
     sensor: Option<Sensor>,
     ambient: Option<f64>,
     background: Option<f64>,
@@ -28,31 +27,14 @@ pub struct SetupToml {
     surfaces: Vec<FacesFinish>,
     detector: Option<Detector>,
     features: Option<Criteria>,
-    viewing: Option<SetupSphere>,
-    illumination: Option<SetupSphere>,
+    pub(super) viewing: Option<SetupSphere>,
+    pub(super) illumination: Option<SetupSphere>,
 }
 
 impl SetupToml {
     /// The keys of a text.
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
         Ok(Document::from_toml(text)?.read()?)
-    }
-
-    /// Many setups.
-    pub fn setups(mut self) -> Result<Setups, SetupError> {
-        if self.camera.is_some() {
-            let reason = "is of one setup; cameras of many are on the sphere `[viewing]`";
-            return Err(SetupError::value("camera", reason));
-        }
-        let missing = || {
-            SetupError::value(
-                "viewing",
-                "is missing: the sphere of cameras, `count = 100`",
-            )
-        };
-        let viewing = self.viewing.take().ok_or_else(missing)?;
-        let (illumination, lights) = (self.illumination.take(), self.lights.clone());
-        Setups::new(self.conditions(), viewing, illumination, lights)
     }
 
     /// The setup of one image.

@@ -9,12 +9,13 @@ pub use error::ShardError;
 use error::failed;
 use lines::Lines;
 use premio_csg::reader::Format;
+use premio_predict::model::Observation;
 use premio_predict::model::consistency::{
     Inconsistency, SourceLimits, check_description, check_observation,
 };
 use premio_predict::model::file::hexadecimal;
 use premio_predict::model::record::DescriptionRecord;
-use premio_predict::model::{Observation, Setups};
+use premio_predict::setup::setups::Setups;
 use premio_text::escape::quote;
 use premio_text::{Content, Document, TextError};
 use serde::{Deserialize, Serialize};

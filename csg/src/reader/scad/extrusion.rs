@@ -7,7 +7,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::arguments::{Argument, Arguments, Value};
-use super::shapes::{Shape, check_smooth, checked, length, radius};
+use super::shapes::{Shape, check_smooth, checked, half, length, radius};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 
@@ -16,10 +16,6 @@ use crate::transform::Transform;
 pub(super) struct Raise {
     height: Rational,
     bottom: Rational,
-}
-
-pub(super) fn half(value: &Rational) -> Rational {
-    value / Rational::from(2)
 }
 
 impl Raise {

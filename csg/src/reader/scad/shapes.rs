@@ -8,7 +8,6 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::number::{bad_length, show};
 use super::arguments::{Argument, Arguments};
-use super::extrusion::half;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::Transform;
 
@@ -85,6 +84,11 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
         checked(Primitive::block(size), &arguments.span)?,
         moves,
     )))
+}
+
+/// Half of a length.
+pub(super) fn half(value: &Rational) -> Rational {
+    value / Rational::from(2)
 }
 
 /// A radius, or half a diameter.

@@ -1,7 +1,7 @@
 //! Sums around the boundary of a face, by Green's theorem.
 
 use super::Moments;
-use super::face::{Density, add};
+use super::density::{Density, add};
 use super::ground::OnEdge;
 use crate::brep::Brep;
 use crate::brep::topology::{CoedgeId, FaceId};

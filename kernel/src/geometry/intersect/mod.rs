@@ -11,27 +11,20 @@ mod sphere;
 mod torus;
 
 use super::curve::Curve;
+use super::region_of_interest::RegionOfInterest;
 use super::surface::{Cone, Surface, SurfaceKind};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
-use super::trace::Unresolved;
+use super::tracer::Unresolved;
 use super::vector::rounded as place;
 use crate::geometry::sense::Sense;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
+use crate::number::function::Function;
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::predicates::Predicates;
-use crate::number::roots::{Function, Roots, isolate};
+use crate::number::roots::{Roots, isolate};
 use nalgebra::Point3;
-
-/// The ball that contains the part. Intersections outside it are not computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RegionOfInterest<N: Float = f64> {
-    /// The centre.
-    pub centre: Point3<N>,
-    /// The radius.
-    pub radius: N,
-}
 
 /// One component of an intersection.
 #[derive(Clone, Debug, PartialEq)]

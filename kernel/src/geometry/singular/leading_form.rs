@@ -18,8 +18,8 @@
 use super::{BranchTangent, SingularPoint, ZONE};
 use crate::geometry::bivariate_trig_poly::{BivariateTrigPoly, Partials};
 use crate::geometry::blow_up::{Chart, DEGREE, Taylor, Weights, sheared, taylor};
-use crate::geometry::torus_curve::TorusParameter;
-use crate::geometry::trace::{Tracer, deepest, near};
+use crate::geometry::torus_parameter::TorusParameter;
+use crate::geometry::tracer::{Tracer, deepest, near};
 use crate::number::analytic::Analytic;
 use crate::number::float::Float;
 use crate::number::interval::Interval;

@@ -1,13 +1,15 @@
 //! Joins the pieces of the curve in the cells to closed branches, through the roots on the cells'
 //! sides and through the singular points.
 
-use super::grid::{Cell, Layout, grid, lines};
-use super::{Leaf, Singular, Traced, Tracer, Unresolved};
+use super::{Leaf, Singular, Traced};
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::blow_up::Chart;
 use crate::geometry::singular::{BranchTangent, SingularPoint};
 use crate::geometry::surface::Torus;
-use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, TorusParameter, wrap};
+use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
+use crate::geometry::torus_grid::{Cell, Layout, grid, lines};
+use crate::geometry::torus_parameter::TorusParameter;
+use crate::geometry::tracer::{Tracer, Unresolved};
 use crate::number::analytic::Analytic;
 use crate::number::float::Float;
 use crate::number::interval::Interval;

@@ -1,68 +1,14 @@
 //! Many setups: cameras on the viewing sphere, each with lights on the illumination sphere.
 
+use super::light::Light;
+use super::setup_sphere::SetupSphere;
+use super::setup_toml::SetupToml;
+use super::viewpoint::Viewpoint;
+use super::{Conditions, MAX_LIGHTS, Setup, SetupError};
 use crate::prepared_part::PreparedPart;
-use crate::setup::light::Light;
-use crate::setup::viewpoint::Viewpoint;
-use crate::setup::{Conditions, MAX_LIGHTS, Setup, SetupError, SetupToml, above_zero};
-use crate::sphere::{Lattice, SphereError, SphereSampling, ViewCone, points};
 use crate::statistics::hash;
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
-
-/// Points on a sphere about the centre of the part.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SetupSphere {
-    /// Its radius, in the part's unit; three times that of the part's own ball if it is not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub radius: Option<f64>,
-    /// The lattice of the points.
-    #[serde(default)]
-    pub lattice: Lattice,
-    /// The number of points.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub count: Option<usize>,
-    /// Or the angle between neighbours, in degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub angle: Option<f64>,
-    /// The cones of directions from the centre that contain the points; all directions if there is
-    /// none.
-    #[serde(default)]
-    pub cones: Vec<ViewCone>,
-}
-
-impl SetupSphere {
-    /// The directions from the centre of the part.
-    fn directions(&self, key: &str) -> Result<Vec<Vector3<f64>>, SetupError> {
-        if let Some(radius) = self.radius {
-            above_zero(&format!("{key}.radius"), radius)?;
-        }
-        let sampling = match (self.count, self.angle) {
-            (Some(count), None) => SphereSampling::Count(count),
-            (None, Some(angle)) => SphereSampling::Angle(angle),
-            _ => {
-                let reason = "or `angle` is needed, and only one of them";
-                return Err(SetupError::value(format!("{key}.count"), reason));
-            }
-        };
-        let failed = |error: SphereError| {
-            let name = match error {
-                SphereError::Angle(_) => "angle",
-                SphereError::Axis(_) | SphereError::HalfAngle { .. } | SphereError::Empty => {
-                    "cones"
-                }
-                SphereError::NoCount | SphereError::TooMany if self.angle.is_some() => "angle",
-                SphereError::NoCount | SphereError::TooMany => "count",
-            };
-            SetupError::value(format!("{key}.{name}"), format!("is invalid: {error}"))
-        };
-        points(self.lattice, sampling, &self.cones).map_err(failed)
-    }
-
-    fn radius_about(&self, subject: &PreparedPart<'_>) -> f64 {
-        self.radius.unwrap_or(3.0 * subject.radius)
-    }
-}
 
 /// Many setups.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,15 +36,27 @@ const MOST: usize = 1 << 32;
 impl TryFrom<SetupToml> for Setups {
     type Error = SetupError;
 
-    fn try_from(written: SetupToml) -> Result<Self, SetupError> {
-        written.setups()
+    fn try_from(mut written: SetupToml) -> Result<Self, SetupError> {
+        if written.camera.is_some() {
+            let reason = "is of one setup; cameras of many are on the sphere `[viewing]`";
+            return Err(SetupError::value("camera", reason));
+        }
+        let missing = || {
+            SetupError::value(
+                "viewing",
+                "is missing: the sphere of cameras, `count = 100`",
+            )
+        };
+        let viewing = written.viewing.take().ok_or_else(missing)?;
+        let (illumination, lights) = (written.illumination.take(), written.lights.clone());
+        Setups::new(written.conditions(), viewing, illumination, lights)
     }
 }
 
 impl Setups {
     /// The setups that a TOML text describes.
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
-        SetupToml::from_toml(text)?.setups()
+        SetupToml::from_toml(text)?.try_into()
     }
 
     /// The setups of spheres under conditions.

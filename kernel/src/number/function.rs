@@ -1,10 +1,47 @@
-//! An f64 filter for functions in extended precision: it finds where they are certainly not zero.
+//! Smooth functions of one parameter, as root isolation reads them, and the f64 filter of one in
+//! extended precision: it finds where the function is certainly not zero.
 
-use super::analytic::Analytic;
-use super::float::Float;
+use super::float::{Analytic, Float};
 use super::interval::Interval;
 use super::jet::Jet;
-use super::roots::{Function, probes};
+use super::probes::probes;
+
+/// A function whose roots are sought.
+pub trait Function<N: Float = f64> {
+    /// The certified ranges of the value and of two derivatives over an interval.
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>>;
+
+    /// A certified range of the value alone, if it is cheaper.
+    fn reach(&self, _t: Interval<N>) -> Interval<N> {
+        Interval::ENTIRE
+    }
+
+    /// An f64 filter over a piece, for a function in extended precision that f64 follows.
+    fn roughly(&self, _piece: [N; 2]) -> Option<F64Filter<'_>> {
+        None
+    }
+
+    /// The value and two derivatives at a point, uncertified.
+    fn at(&self, t: N) -> Jet<N> {
+        let j = self.over(Interval::point(t));
+        Jet {
+            v: j.v.mid(),
+            d: j.d.mid(),
+            dd: j.dd.mid(),
+        }
+    }
+
+    /// The value at a point, uncertified.
+    fn value(&self, t: N) -> N {
+        self.at(t).v
+    }
+}
+
+impl<N: Float, F: Fn(Interval<N>) -> Jet<Interval<N>>> Function<N> for F {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
+        self(t)
+    }
+}
 
 /// An f64 function that approximates one in extended precision over a piece of its parameter range.
 pub struct F64Filter<'a> {

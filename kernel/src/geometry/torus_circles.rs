@@ -5,10 +5,11 @@
 //! method along the curve needs points that are themselves solved for; where the curve runs nearly
 //! along the circle it needs very many.
 
-use super::{TorusCurve, TorusCurveSegment, TorusParameter, arrange, wrap};
 use crate::geometry::curve::Circle;
 use crate::geometry::implicit_on_curve::ImplicitOnCurve;
 use crate::geometry::surface::Surface;
+use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
+use crate::geometry::torus_parameter::{TorusParameter, arrange};
 use crate::geometry::trigonometric::simple_zeros;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;

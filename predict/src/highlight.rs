@@ -1,10 +1,10 @@
 //! Outlines of highlights: where the specular reflection of a light in a face has half its greatest
 //! brightness.
 
-use super::arc::{ArcSource, PredictedArc};
-use super::flatten::Polyline;
-use super::regions::{RegionSample, Regions};
 use crate::image::shading::Shading;
+use crate::image_arcs::arc::{ArcSource, PredictedArc};
+use crate::image_arcs::flatten::Polyline;
+use crate::image_arcs::regions::{RegionSample, Regions};
 use crate::setup::Conditions;
 use premio_kernel::brep::topology::FaceId;
 use std::f64::consts::TAU;
@@ -85,7 +85,7 @@ fn peaks(
     lights: usize,
 ) -> Vec<Option<Peak>> {
     let mut peaks: Vec<Option<Peak>> = vec![None; regions.all.len() * lights];
-    let first = |r: &super::Region| r.seen.map_or(0.0, |s| shading.distance(&s.point));
+    let first = |r: &crate::image_arcs::Region| r.seen.map_or(0.0, |s| shading.distance(&s.point));
     let mut hints: Vec<f64> = regions.all.iter().map(first).collect();
     for y in (0..height).step_by(EVERY) {
         for x in (0..width).step_by(EVERY) {

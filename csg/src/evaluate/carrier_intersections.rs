@@ -1,0 +1,254 @@
+//! Builds the arrangement: intersects the carriers and splits the curves.
+//!
+//! Everything that coincides within the resolution is merged here, before any topology. Equal
+//! surfaces become one carrier. Equal points become one vertex, which records all carriers through
+//! it.
+
+use super::arrangement::{Arrangement, Cut, IntersectionCurve, SolidTree, common};
+use super::close_calls::Between;
+use super::distinct_surfaces::{Merged, Source, merge};
+use super::error::EvaluationError;
+use super::halfspaces::HalfSpaceModel;
+use super::split_curves::Later;
+use super::vertices::VertexMerger;
+use crate::tree::Tree;
+use premio_kernel::geometry::bounds::{Aabb, pieces};
+use premio_kernel::geometry::curve::{Curve, Line};
+use premio_kernel::geometry::intersect::{Branch, intersect};
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
+use premio_kernel::geometry::surface_pair::Carrier;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use std::collections::{BTreeMap, HashSet};
+
+/// Builds the arrangement, with at most `most` curves and cuts, and the sources of its carriers.
+pub(super) fn arrange<'t, N: Float>(
+    tree: &'t Tree,
+    solids: &HalfSpaceModel<N>,
+    extent: &RegionOfInterest<N>,
+    predicates: &Predicates,
+    most: usize,
+) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
+    let Merged {
+        carriers,
+        sources,
+        sides,
+    } = merge(tree, solids, extent, predicates);
+    // Faces that nearly intersect are included: a close call is listed on either side of the
+    // resolution.
+    let reach = predicates.reach();
+    let tree = tree_of(solids, 0..solids.all.len(), reach);
+    let mut found = Arrangement {
+        carriers,
+        sides,
+        meetings: Vec::new(),
+        corners: Vec::new(),
+        calls: Vec::new(),
+        tree,
+    };
+    let mut corners = VertexMerger::new(predicates.resolution());
+    for (pair, supports) in found.pairs(solids, reach, most)? {
+        found.add_pair(pair, &supports, &sources, extent, predicates, &mut corners)?;
+        bounded(found.meetings.len(), most)?;
+    }
+    found.settle_contacts(predicates);
+    let mut later = Later::default();
+    let mut entities = found.meetings.len();
+    for i in 0..found.meetings.len() {
+        found.cut_meeting(i, solids, predicates, &mut corners, &mut later);
+        entities += found.meetings[i].cuts.len();
+        bounded(entities, most)?;
+    }
+    found.calls.append(&mut later.calls);
+    // The most accurate come first; the others are moved to them.
+    later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+    for w in &later.wide {
+        found.place_wide(w, predicates, &mut corners);
+    }
+    found.calls.append(&mut corners.calls);
+    found.corners = corners.all;
+    found.share_corners(predicates);
+    for m in &mut found.meetings {
+        m.order_cuts();
+    }
+    Ok((found, sources))
+}
+
+/// The tree of the boxes of some solids, enlarged by `reach`.
+fn tree_of<N: Float>(
+    solids: &HalfSpaceModel<N>,
+    which: impl Iterator<Item = usize>,
+    reach: N,
+) -> SolidTree {
+    let boxes = which.map(|i| {
+        let b = solids.all[i].bounds.grown(reach);
+        GeomWithData::new(Rectangle::from_corners(b.min, b.max), i)
+    });
+    RTree::bulk_load(boxes.collect())
+}
+
+/// Returns an error if there are more entities than the limit.
+fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
+    match entities > most {
+        true => Err(EvaluationError::EntityLimit { most }),
+        false => Ok(()),
+    }
+}
+
+type Pairs = BTreeMap<(usize, usize), Vec<Aabb>>;
+
+impl<N: Float> Arrangement<N> {
+    /// The pairs of carriers whose faces' boxes intersect, with the intersections of these boxes.
+    /// Of several equal solids one is used.
+    fn pairs(
+        &self,
+        solids: &HalfSpaceModel<N>,
+        reach: N,
+        most: usize,
+    ) -> Result<Pairs, EvaluationError> {
+        let mut pairs = Pairs::new();
+        let mut known = HashSet::new();
+        let is_new = |i: &usize| {
+            let Aabb { min, max } = solids.all[*i].bounds;
+            known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
+        };
+        let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();
+        let tree = tree_of(solids, distinct.iter().copied(), reach);
+        let mut shared = 0;
+        for &i in &distinct {
+            let s = &solids.all[i].bounds;
+            let around = AABB::from_corners(s.min, s.max);
+            for near in tree.locate_in_envelope_intersecting(around) {
+                let j = near.data;
+                if j >= i {
+                    shared += self.add_pairs_of(solids, i, j, reach, &mut pairs);
+                }
+            }
+            bounded(shared, most)?;
+        }
+        Ok(pairs)
+    }
+
+    /// Adds the pairs of two solids, and returns their number.
+    fn add_pairs_of(
+        &self,
+        solids: &HalfSpaceModel<N>,
+        i: usize,
+        j: usize,
+        reach: N,
+        pairs: &mut Pairs,
+    ) -> usize {
+        let mut added = 0;
+        let (s, o) = (&solids.all[i], &solids.all[j]);
+        for (k, a) in s.sides.iter().enumerate() {
+            let box_a = a.bounds.grown(reach);
+            for (l, b) in o.sides.iter().enumerate() {
+                let (c, d) = (self.sides[i][k].0, self.sides[j][l].0);
+                if c == d || (i == j && k >= l) {
+                    continue;
+                }
+                if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
+                    pairs.entry((c.min(d), c.max(d))).or_default().push(shared);
+                    added += 1;
+                }
+            }
+        }
+        added
+    }
+
+    fn add_pair(
+        &mut self,
+        (a, b): (usize, usize),
+        supports: &[Aabb],
+        sources: &[Source<'_>],
+        extent: &RegionOfInterest<N>,
+        predicates: &Predicates,
+        corners: &mut VertexMerger<N>,
+    ) -> Result<(), EvaluationError> {
+        let exact = [a, b].map(|c| move || sources[c].exact());
+        let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
+        let own = predicates.another();
+        let found = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        for call in predicates.take(own) {
+            match call.local {
+                true => self.calls.push((call, Between::Carriers([a, b]))),
+                false => predicates.list(call),
+            }
+        }
+        let mut kept: Vec<Vec<usize>> = Vec::new();
+        for branch in &found.branches {
+            kept.push(self.add_branch(a, b, branch, supports, predicates));
+        }
+        for node in &found.nodes {
+            if node.on.is_empty() && !supports.iter().any(|s| s.contains(&node.point)) {
+                continue;
+            }
+            let vertex = corners.at(&node.point, &[a, b], predicates);
+            for &(branch, t) in &node.on {
+                for &m in &kept[branch] {
+                    let [lo, hi] = self.meetings[m].range;
+                    let resolution = predicates.resolution::<N>();
+                    if t.lies_in([lo - resolution, hi + resolution]) {
+                        let t = t.clamp(lo, hi);
+                        self.meetings[m].cuts.push(Cut { t, vertex });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a branch, clipped to both faces' boxes, and returns its indices.
+    fn add_branch(
+        &mut self,
+        a: usize,
+        b: usize,
+        branch: &Branch<N>,
+        supports: &[Aabb],
+        predicates: &Predicates,
+    ) -> Vec<usize> {
+        let ranges = match &branch.curve {
+            Curve::Line(line) => clipped(line, branch.range, supports),
+            _ => vec![branch.range],
+        };
+        let mut kept = Vec::new();
+        for range in ranges {
+            let parts = pieces(&branch.curve, range);
+            let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
+            if !supports
+                .iter()
+                .any(|s| common(s, &b3.grown(predicates.resolution::<N>())).is_some())
+            {
+                continue;
+            }
+            kept.push(self.meetings.len());
+            self.meetings.push(IntersectionCurve {
+                curve: branch.curve.clone(),
+                range,
+                closed: branch.closed && range == branch.range,
+                carriers: vec![a, b],
+                tangent: branch.tangent.then_some([a, b]).into_iter().collect(),
+                bounds: b3,
+                parts,
+                cuts: Vec::new(),
+            });
+        }
+        kept
+    }
+}
+
+/// The parts of a line inside the boxes; overlapping parts are joined.
+fn clipped<N: Float>(line: &Line<N>, range: [N; 2], boxes: &[Aabb]) -> Vec<[N; 2]> {
+    let mut parts: Vec<[N; 2]> = boxes.iter().filter_map(|b| b.along(line, range)).collect();
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut joined: Vec<[N; 2]> = Vec::new();
+    for p in parts {
+        match joined.last_mut() {
+            Some(last) if p[0].is_at_most(last[1]) => last[1] = last[1].max(p[1]),
+            _ => joined.push(p),
+        }
+    }
+    joined
+}

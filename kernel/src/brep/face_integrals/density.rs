@@ -1,0 +1,76 @@
+//! The integrand over a face, and the parameters from which its integrals start.
+
+use super::ground::{Between, Ground};
+use super::{Amid, Moments};
+use crate::brep::Brep;
+use crate::brep::topology::CoedgeId;
+use crate::geometry::bounds;
+use crate::geometry::surface::Surface;
+use crate::number::float::Float;
+use crate::number::quadrature::adaptive;
+use nalgebra::Point3;
+
+/// The data for integration over a face.
+pub(super) struct Density<'a, N: Float = f64> {
+    pub ground: Ground<N>,
+    /// The surface rounded to f64, where f64 may be accurate enough.
+    pub rounded_f64: Option<Ground>,
+    pub amid: &'a Amid<N>,
+    /// The errors that may be ignored.
+    pub floor: Moments<N>,
+}
+
+impl<N: Float> Density<'_, N> {
+    /// The v from which the integral along v starts for a loop. It is amid the loop's edges, so
+    /// that what they have in common need not cancel.
+    pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
+        match &self.ground.surface {
+            // At the apex u jumps, so there may be nothing in between.
+            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.ground.base,
+            _ => amid_edges(brep, &self.ground, coedges),
+        }
+    }
+
+    /// The integral over the whole surface between two v.
+    pub fn between(&self, from: N, to: N) -> Moments<N> {
+        self.over([N::ZERO, N::TAU], [from, to])
+    }
+
+    /// The integral over a range of u and of v.
+    pub fn over(&self, [a, b]: [N; 2], range: [N; 2]) -> Moments<N> {
+        let between = Between {
+            ground: &self.ground,
+            range,
+            rounded_f64: self.rounded_f64.as_ref(),
+        };
+        adaptive(a, b, &self.floor, &between)
+    }
+}
+
+/// Whether edges may pass through a point.
+fn reaches<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> bool {
+    coedges.iter().any(|&c| {
+        let e = brep.topology.coedge(c).edge;
+        let around = bounds::bounds(brep.curve(e), brep.range(e));
+        around.grown(around.diagonal()).contains(p)
+    })
+}
+
+/// A v amid the edges of a face.
+fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]) -> N {
+    let middle = |&c: &CoedgeId| {
+        let e = brep.topology.coedge(c).edge;
+        let [lo, hi] = brep.range(e);
+        let [_, v] = ground.parameters(&brep.curve(e).point(N::HALF * (lo + hi)));
+        v
+    };
+    match coedges.len() {
+        0 => ground.base,
+        n => coedges.iter().map(middle).sum::<N>() / N::from_f64(n as f64),
+    }
+}
+
+/// The sum of two moments.
+pub(super) fn add<N: Float>(a: Moments<N>, b: Moments<N>) -> Moments<N> {
+    std::array::from_fn(|i| a[i] + b[i])
+}

@@ -404,7 +404,8 @@ impl<N: Float> SurfacePath<N> {
             let is_vague = || match arc.curve {
                 Curve::Toric(c) => {
                     let bend = arc.curve.curvature(t).length();
-                    c.rounding_error(t) * bend * N::from_f64(TURNS_BACK) > turn.abs()
+                    let turned = c.rounding_error(t) * bend * N::from_f64(TURNS_BACK);
+                    turn.abs().is_short_of(turned)
                 }
                 _ => false,
             };

@@ -404,7 +404,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn quantitative_invisibility(self) -> u32 {
-        self.piece.qi
+        self.piece.quantitative_invisibility
     }
 
     /// The face in front of the arc that is nearest to the eye.
@@ -501,7 +501,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn image_curve(self) -> &'v ImageCurve {
-        &self.contour.curve2
+        &self.contour.image_curve
     }
 
     /// The curve in space.
@@ -516,7 +516,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn space_curve(self) -> &'v Curve {
-        &self.contour.curve3
+        &self.contour.space_curve
     }
 
     /// The range of the space curve's parameter, increasing; it may pass the end of a period.
@@ -531,7 +531,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn range(self) -> [f64; 2] {
-        self.piece.t
+        self.piece.range
     }
 
     /// The junctions at the start and the end; none of a whole closed contour.

@@ -90,10 +90,10 @@ fn points(
 ) -> Vec<(Point3<f64>, SampleHit)> {
     let mut all = Vec::new();
     for piece in contour.pieces.iter().filter(|p| p.visible) {
-        let [from, to] = piece.t;
+        let [from, to] = piece.range;
         let mark = |k: usize, n: usize| {
             let parameter = from + (to - from) * (k as f64 + 0.5) / n as f64;
-            let curve = &contour.curve3;
+            let curve = &contour.space_curve;
             EdgeSample {
                 point: curve.point(parameter),
                 tangent: curve.tangent(parameter),

@@ -255,8 +255,8 @@ impl Sightings<'_> {
         for contour in &contours.contours {
             let straight = is_straight(contour);
             for piece in contour.pieces.iter().filter(|piece| piece.visible) {
-                let curve = |t: f64| Some(shown(projection, &contour.curve3.point(t)));
-                let Some(mut line) = flatten(curve, piece.t, straight, (fine, window)) else {
+                let curve = |t: f64| Some(shown(projection, &contour.space_curve.point(t)));
+                let Some(mut line) = flatten(curve, piece.range, straight, (fine, window)) else {
                     continue;
                 };
                 // Pieces with a common end get the same end point, however it was computed.
@@ -295,7 +295,7 @@ pub fn ordinals(contours: &Contours) -> Vec<u32> {
 /// Whether the image of a contour is a straight line that is traversed in one direction.
 pub fn is_straight(contour: &Contour) -> bool {
     matches!(
-        (&contour.curve2, &contour.curve3),
+        (&contour.image_curve, &contour.space_curve),
         (
             ImageCurve::Line { .. },
             premio_kernel::geometry::curve::Curve::Line(_)
@@ -304,7 +304,7 @@ pub fn is_straight(contour: &Contour) -> bool {
 }
 
 fn coefficients(contour: &Contour) -> Vec<f64> {
-    match &contour.curve2 {
+    match &contour.image_curve {
         ImageCurve::Line { coefficients } => coefficients.to_vec(),
         ImageCurve::Conic { coefficients } => coefficients.to_vec(),
         ImageCurve::Point { .. } | ImageCurve::Projected => Vec::new(),
@@ -325,7 +325,7 @@ fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &Contour
     let last = line.points.len() - 1;
     for (end, at) in [(piece.start, 0), (piece.end, last)] {
         if let Some(id) = end {
-            line.points[at] = contours.junctions[id as usize].point2;
+            line.points[at] = contours.junctions[id as usize].image_point;
         }
     }
 }
@@ -354,7 +354,7 @@ fn stop(arcs: &mut [PredictedArc], contours: &Contours) {
         if junction.kind != JunctionKind::T {
             continue;
         }
-        let p = junction.point2;
+        let p = junction.image_point;
         // A limb may pass in front of itself: then one of its pieces ends here, and another does
         // not.
         let on = by_contour.get(before).into_iter().flatten();

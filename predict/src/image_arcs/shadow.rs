@@ -132,11 +132,11 @@ fn terminator(
     let contour = &view.contours.contours[limb.contour? as usize];
     let camera = stage.view.scene.projection;
     let curve = |t: f64| {
-        let p = contour.curve3.point(t);
+        let p = contour.space_curve.point(t);
         (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
     };
     let range = [limb.line.parameters[0], *limb.line.parameters.last()?];
-    let straight = matches!(contour.curve3, Curve::Line(_));
+    let straight = matches!(contour.space_curve, Curve::Line(_));
     let mut line = flatten(curve, range, straight, (FINE, window))?;
     draw_out(&mut line);
     let light = light as u32;
@@ -190,7 +190,7 @@ fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: 
     let p = Point2::from(line.points[k]);
     let step = (line.parameters[k + 1] - line.parameters[k - 1]) * ASIDE;
     for _ in 0..4 {
-        let at = |t: f64| view.scene.projection.project(&contour.curve3.point(t));
+        let at = |t: f64| view.scene.projection.project(&contour.space_curve.point(t));
         let along = (at(t + step) - at(t - step)) / (2.0 * step);
         let off = (p - at(t)).dot(&along) / along.norm_squared();
         if !off.is_finite() {
@@ -212,9 +212,9 @@ fn cast<'v>(
 ) -> Option<Cast<'v>> {
     let projection = view.scene.projection;
     let t = 0.5 * (range[0] + range[1]);
-    let p = contour.curve3.point(t);
+    let p = contour.space_curve.point(t);
     let step = (range[1] - range[0]) * ASIDE;
-    let image = |t: f64| projection.project(&contour.curve3.point(t));
+    let image = |t: f64| projection.project(&contour.space_curve.point(t));
     let along = image(t + step) - image(t - step);
     let across = nalgebra::Vector2::new(-along.y, along.x) / along.norm();
     if !across.x.is_finite() {
@@ -268,7 +268,7 @@ fn open_direction(
 fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> Option<Shown> {
     let light = view.scene.projection;
     let camera = stage.view.scene.projection;
-    let image = light.project(&cast.contour.curve3.point(t));
+    let image = light.project(&cast.contour.space_curve.point(t));
     let (origin, into) = light.line_of_sight(&image);
     let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
     let p = origin + into * far;
@@ -282,7 +282,7 @@ fn shadow(
     cast: &Cast<'_>,
     window: &ImageWindow,
 ) -> Option<Polyline> {
-    let straight = matches!(cast.contour.curve3, Curve::Line(_))
+    let straight = matches!(cast.contour.space_curve, Curve::Line(_))
         && matches!(stage.subject.brep.surface(cast.ground), Surface::Plane(_));
     let curve = |t: f64| fall(stage, view, cast, t);
     let mut line = flatten(curve, cast.range, straight, (FINE, window))?;

@@ -34,7 +34,7 @@ fn of_arc(draft: &PredictedImage<'_>, number: usize, evidence: &DetectedArc) -> 
     let Some(contour) = arc.contour.filter(|_| !arc.smooth) else {
         return sum;
     };
-    let curve = &draft.stage.view.contours.contours[contour as usize].curve3;
+    let curve = &draft.stage.view.contours.contours[contour as usize].space_curve;
     let sigma = evidence.off.max(LEAST);
     for fragment in &evidence.fragments {
         let [from, to] = fragment.along;

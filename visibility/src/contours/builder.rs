@@ -295,8 +295,8 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             smooth: false,
             faces,
             edge: source.edge,
-            curve3: source.curve.clone(),
-            curve2: image_curve(seen, source, self.scene.projection),
+            space_curve: source.curve.clone(),
+            image_curve: image_curve(seen, source, self.scene.projection),
             pieces: Vec::new(),
         }
     }

@@ -22,11 +22,13 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContourPiece {
     /// The range of the curve's parameter, increasing; it may pass the end of a period.
-    pub t: [f64; 2],
+    #[serde(rename = "t")]
+    pub range: [f64; 2],
     /// Whether no face occludes it.
     pub visible: bool,
     /// The number of faces turned towards the eye that lie in front of it.
-    pub qi: u32,
+    #[serde(rename = "qi")]
+    pub quantitative_invisibility: u32,
     /// The one of them nearest to the eye.
     pub occluder: Option<FaceId>,
     /// The junction at its start; none for a whole closed contour.
@@ -66,7 +68,7 @@ pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occ
         ambiguous.push(count);
     }
     // Contours that overlap are ambiguous everywhere, and the counts agree.
-    ambiguous.sort_by_key(|c| c.qi);
+    ambiguous.sort_by_key(|c| c.quantitative_invisibility);
     ambiguous.swap_remove(PLACES.len() / 2)
 }
 
@@ -146,9 +148,9 @@ pub fn pieces(
 
 fn piece(span: &Span, count: &Occluders) -> ContourPiece {
     ContourPiece {
-        t: span.range,
-        visible: count.qi == 0,
-        qi: count.qi,
+        range: span.range,
+        visible: count.quantitative_invisibility == 0,
+        quantitative_invisibility: count.quantitative_invisibility,
         occluder: count.occluder(),
         start: span.ends[0],
         end: span.ends[1],
@@ -300,7 +302,9 @@ impl<'s, 'a> Carrying<'s, 'a> {
             return;
         };
         match &self.beyond[junction as usize] {
-            Some(known) => self.sound &= known.qi == beyond.qi,
+            Some(known) => {
+                self.sound &= known.quantitative_invisibility == beyond.quantitative_invisibility
+            }
             None => {
                 self.beyond[junction as usize] = Some(beyond);
                 let first = self.through.partition_point(|t| t.0 < junction);
@@ -322,12 +326,14 @@ fn carry(
     before: Occluders,
     passing: &Passing,
 ) -> Option<Occluders> {
-    let qi = before.qi.checked_add_signed(passing.by)?;
+    let quantitative_invisibility = before
+        .quantitative_invisibility
+        .checked_add_signed(passing.by)?;
     let order = order_after(scene, p, before, passing)?;
     let known = order.len() as u32;
-    let sound = known <= qi && (known > 0 || qi == 0);
+    let sound = known <= quantitative_invisibility && (known > 0 || quantitative_invisibility == 0);
     sound.then_some(Occluders {
-        qi,
+        quantitative_invisibility,
         order,
         unambiguous: true,
     })

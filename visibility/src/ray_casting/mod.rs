@@ -70,7 +70,7 @@ pub enum FaceQuery {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Occluders {
     /// The number of faces turned towards the eye.
-    pub qi: u32,
+    pub quantitative_invisibility: u32,
     /// The faces nearest to the eye, the nearest first, as far as their order is known; at least
     /// one if there are any.
     pub order: Vec<FaceId>,
@@ -86,7 +86,7 @@ impl Occluders {
 
     /// Whether the order of all faces is known.
     pub fn is_whole(&self) -> bool {
-        self.order.len() as u32 == self.qi
+        self.order.len() as u32 == self.quantitative_invisibility
     }
 
     /// The occluders with these faces added between all others and the point, the nearest to the
@@ -96,7 +96,7 @@ impl Occluders {
         if count.is_whole() {
             count.order.extend(faces);
         }
-        count.qi += faces.len() as u32;
+        count.quantitative_invisibility += faces.len() as u32;
         count
     }
 
@@ -104,8 +104,10 @@ impl Occluders {
     /// do not.
     pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
         let mut count = self.clone();
-        count.qi = count.qi.checked_sub(faces.len() as u32)?;
-        let kept = count.qi as usize;
+        count.quantitative_invisibility = count
+            .quantitative_invisibility
+            .checked_sub(faces.len() as u32)?;
+        let kept = count.quantitative_invisibility as usize;
         if self.is_whole() && self.order[kept..] != *faces {
             return None;
         }
@@ -314,7 +316,7 @@ impl Scene<'_> {
         fronts.sort_by(|a, b| b.at.total_cmp(&a.at));
         if !unclear.iter().any(|hit| hit.front) {
             return Occluders {
-                qi: fronts.len() as u32,
+                quantitative_invisibility: fronts.len() as u32,
                 order: fronts.iter().map(|hit| hit.face).collect(),
                 unambiguous: unclear.is_empty(),
             };
@@ -330,7 +332,7 @@ impl Scene<'_> {
         // Intersections next to boundaries may be equally near, so only the first is certain.
         let first = most.iter().max_by(|a, b| a.at.total_cmp(&b.at));
         Occluders {
-            qi: most.len() as u32,
+            quantitative_invisibility: most.len() as u32,
             order: first.map(|layer| layer.face).into_iter().collect(),
             unambiguous: false,
         }

@@ -244,18 +244,18 @@ impl SheetReport {
         read: &[Stroke],
     ) {
         let smooth = read.iter().any(|s| s.layer == Layer::Smooth);
-        let drawn = seen
-            .contours
-            .iter()
-            .filter(|c| (smooth || !c.smooth) && !matches!(c.curve2, ImageCurve::Point { .. }));
+        let drawn = seen.contours.iter().filter(|c| {
+            (smooth || !c.smooth) && !matches!(c.image_curve, ImageCurve::Point { .. })
+        });
         let pieces: Vec<_> = drawn
             .flat_map(|c| c.pieces.iter().map(move |piece| (c, piece)))
             .collect();
         let mut undrawn = Vec::new();
         for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
-            let [lo, hi] = piece.t;
-            let at =
-                |part: f64| projection.project_y_up(&contour.curve3.point(lo + (hi - lo) * part));
+            let [lo, hi] = piece.range;
+            let at = |part: f64| {
+                projection.project_y_up(&contour.space_curve.point(lo + (hi - lo) * part))
+            };
             let suits = |s: &Stroke| s.visible || !piece.visible;
             let is_drawn = |p: &Point2<f64>| strokes.passing(p, tolerance).any(|(_, s)| suits(s));
             let missing: Vec<_> = ON_PIECES

@@ -271,8 +271,8 @@ fn sample(
 ) -> (Point3<f64>, Frame, f64) {
     let [lo, hi] = piece.range;
     let p = contour.space_curve.point(lo + part * (hi - lo));
-    let (towards, reach) = projection.towards_eye(&p);
-    (p, Frame::about(p, towards), reach)
+    let eye = projection.towards_eye(&p);
+    (p, Frame::about(p, eye.direction), eye.distance)
 }
 
 fn single(v: Vector3<f64>) -> Vec3A {

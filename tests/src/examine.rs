@@ -173,7 +173,7 @@ fn passing(
     let [lo, hi] = piece.range;
     let p = contour.space_curve.point(lo + (hi - lo) * COUNTED_AT);
     let size = evaluation.bounds.diagonal();
-    let (v, _) = Projection::new(camera, size).towards_eye(&p);
+    let v = Projection::new(camera, size).towards_eye(&p).direction;
     let away = |q: Point3<f64>| (q - p).cross(&v).norm();
     // Another part of the contour itself counts if it is clearly closer to the eye.
     let before = |other: &Contour, q: Point3<f64>| {

@@ -135,14 +135,14 @@ fn real_roots(k: &[f64], [lo, hi]: [f64; 2]) -> Vec<f64> {
 fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u32> {
     let lateral = 1e-7 * (t.major + t.minor);
     let depth = 4.0 * (lateral * (t.major + t.minor)).sqrt();
-    let (v, _) = projection.towards_eye(p);
+    let v = projection.towards_eye(p).direction;
     let n = t.normal(p);
     let across = n.cross(&v);
     let count = |offset: Vector3<f64>| {
         let q = p + offset * lateral;
-        let (v, length) = projection.towards_eye(&q);
-        let within = t.inside(&q, &v, [depth, length]);
-        within.iter().filter(|i| i[1] < length).count() as u32
+        let eye = projection.towards_eye(&q);
+        let within = t.inside(&q, &eye.direction, [depth, eye.distance]);
+        within.iter().filter(|i| i[1] < eye.distance).count() as u32
     };
     let all: Vec<u32> = [n, n + across, n - across, -n, across - n, -n - across]
         .iter()
@@ -243,7 +243,7 @@ impl Tally {
                 let mut bends = [false; 2];
                 for k in 0..24 {
                     let p = at((f64::from(k) + 0.5) / 24.0);
-                    let (v, _) = projection.towards_eye(&p);
+                    let v = projection.towards_eye(&p).direction;
                     if t.value(&p).abs() > 1e-9 || t.normal(&p).dot(&v).abs() > 1e-7 {
                         wrong.push(format!("{name}: {p} is on no limb"));
                     }

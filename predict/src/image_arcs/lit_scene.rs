@@ -11,7 +11,7 @@ use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::camera::{CameraError, ViewCamera};
 use premio_visibility::contours::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
-use premio_visibility::ray_casting::OriginIncidence;
+use premio_visibility::ray_casting::{FirstHit, OriginIncidence};
 use premio_visibility::scene::Scene;
 use premio_visibility::{ViewError, contours};
 use std::collections::HashMap;
@@ -240,7 +240,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// The face that is visible at a point of the image, and the point of it.
-    pub fn seen(&self, at: [f64; 2]) -> Option<(FaceId, Point3<f64>)> {
+    pub fn seen(&self, at: [f64; 2]) -> Option<FirstHit> {
         self.view.scene.nearest(&Point2::from(at))
     }
 }

@@ -12,6 +12,7 @@ use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_visibility::contours::Contour;
+use premio_visibility::ray_casting::FirstHit;
 
 /// The lateral distance from a contour at which its sides are evaluated, relative to the part's
 /// size.
@@ -226,9 +227,9 @@ fn cast<'v>(
     let first = (towards - projection.project(&p)).dot(&across).signum();
     [first, -first].into_iter().find_map(|side| {
         let aside = projection.project(&p) + across * (side * size * ASIDE);
-        let (face, q) = view.scene.nearest(&aside)?;
+        let FirstHit { face, point: q } = view.scene.nearest(&aside)?;
         let jump = projection.depth(&q) - depth;
-        let (origin, _) = projection.line_of_sight(&aside);
+        let origin = projection.line_of_sight(&aside).origin;
         (jump > BEHIND * stage.subject.radius).then(|| Cast {
             contour,
             range,
@@ -248,7 +249,7 @@ fn open_direction(
     contour: &Contour,
     p: &Point3<f64>,
 ) -> Option<Vector3<f64>> {
-    let (towards, _) = view.scene.projection.towards_eye(p);
+    let towards = view.scene.projection.towards_eye(p).direction;
     let outward = |face: &FaceId| stage.subject.brep.outward(*face, p);
     let is_turned = |n: &Vector3<f64>| n.dot(&towards) > 0.0;
     let normals = || contour.faces.iter().map(outward);
@@ -269,9 +270,9 @@ fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> 
     let light = view.scene.projection;
     let camera = stage.view.scene.projection;
     let image = light.project(&cast.contour.space_curve.point(t));
-    let (origin, into) = light.line_of_sight(&image);
-    let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
-    let p = origin + into * far;
+    let sight = light.line_of_sight(&image);
+    let far = front(stage.subject.brep, cast.ground, &sight, cast.hint)?;
+    let p = sight.origin + sight.direction * far;
     (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
 }
 
@@ -337,9 +338,9 @@ fn visible_parts(
             continue;
         };
         let depth = 0.5 * (part.depths[i] + part.depths[i + 1]);
-        let is_seen = stage.seen(part.at(i, s)).is_some_and(|(face, p)| {
-            let off = stage.view.scene.projection.scale(&p) - depth;
-            Some(face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
+        let is_seen = stage.seen(part.at(i, s)).is_some_and(|hit| {
+            let off = stage.view.scene.projection.scale(&hit.point) - depth;
+            Some(hit.face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
         });
         if is_seen {
             for (place, arc) in [(from, before), (to, after)] {

@@ -182,14 +182,14 @@ fn closer(clearance: &Clearance) -> Vec<Clearance> {
 
 /// The direction from a point to the eye, and the distance to the eye or the near plane.
 fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
-    let (towards, length) = projection.towards_eye(p);
+    let eye = projection.towards_eye(p);
     let depth = projection.depth(p);
     let seen = depth - projection.near;
     let reach = match projection.sight {
-        ViewRay::Eye(_) => length * (seen / depth),
+        ViewRay::Eye(_) => eye.distance * (seen / depth),
         ViewRay::Direction(_) => seen,
     };
-    (towards, reach)
+    (eye.direction, reach)
 }
 
 /// The number of wrong pieces that are reported individually.

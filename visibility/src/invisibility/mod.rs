@@ -74,9 +74,9 @@ pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occ
 
 fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
     let p = &arc.curve.point(t);
-    let (v, _) = scene.projection.towards_eye(p);
+    let v = scene.projection.towards_eye(p).direction;
     let own = |face: FaceId| {
-        if !arc.faces.iter().any(|f| f.0 == face) {
+        if !arc.faces.iter().any(|f| f.face == face) {
             return OriginIncidence::No;
         }
         let surface = scene.brep.surface(face);
@@ -106,7 +106,7 @@ fn inward(
     v: &Vector3<f64>,
 ) -> Vec<Vector3<f64>> {
     let halved = arc.faces.chunks(2).map(|pair| {
-        let normals = pair.iter().map(|&(face, _)| scene.brep.outward(face, p));
+        let normals = pair.iter().map(|f| scene.brep.outward(f.face, p));
         let inward = -normals.sum::<Vector3<f64>>();
         inward - v * inward.dot(v)
     });
@@ -158,6 +158,19 @@ fn piece(span: &Span, count: &Occluders) -> ContourPiece {
     }
 }
 
+/// An arc through a junction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Through {
+    junction: u32,
+    arc: u32,
+}
+
+/// The faces that hide a span next to the junction at one of its ends.
+struct Local {
+    junction: u32,
+    hiding: Vec<FaceId>,
+}
+
 /// The propagation of quantitative invisibility through the connected parts of the contours.
 struct Carrying<'s, 'a> {
     scene: &'s Scene<'a>,
@@ -167,8 +180,8 @@ struct Carrying<'s, 'a> {
     corrections: Corrections<'s, 'a>,
     /// By junction: the occluders of all contours there, without the faces through the junction.
     beyond: Vec<Option<Occluders>>,
-    /// The arcs through the junctions: junction and arc, in order.
-    through: Vec<(u32, u32)>,
+    /// The arcs through the junctions, in order.
+    through: Vec<Through>,
     /// By arc: the occluders of each span.
     counts: Vec<Vec<Option<Occluders>>>,
     /// The arcs that are connected to known spans.
@@ -184,10 +197,13 @@ impl<'s, 'a> Carrying<'s, 'a> {
         chains: &'s [Chain],
         junctions: &'s Junctions<'s>,
     ) -> Self {
-        let mut through: Vec<(u32, u32)> = Vec::with_capacity(2 * junctions.list.len());
+        let mut through: Vec<Through> = Vec::with_capacity(2 * junctions.list.len());
         for (i, chain) in chains.iter().enumerate() {
             let ids = chain.spans.iter().flat_map(|s| s.ends).flatten();
-            through.extend(ids.map(|id| (id, i as u32)));
+            through.extend(ids.map(|junction| Through {
+                junction,
+                arc: i as u32,
+            }));
         }
         through.sort_unstable();
         through.dedup();
@@ -266,7 +282,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
 
     /// The faces at a junction at an end of a span that hide it there, where it is unambiguous that
     /// these alone make the difference between the contours at the junction.
-    fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
+    fn local(&self, i: usize, k: usize, which: usize) -> Option<Local> {
         let Span { range, ends, .. } = self.chains[i].spans[k];
         let junction = ends[which]?;
         if self.junctions.is_ambiguous(junction) {
@@ -278,14 +294,14 @@ impl<'s, 'a> Carrying<'s, 'a> {
             middle: 0.5 * (range[0] + range[1]),
         };
         let hiding = self.corrections.hiding(self.junctions, junction, &end)?;
-        Some((junction, hiding))
+        Some(Local { junction, hiding })
     }
 
     /// The occluders of a span at one of its ends, from those known at the junction there.
     fn enter(&self, i: usize, k: usize, which: usize) -> Option<Occluders> {
         let junction = self.chains[i].spans[k].ends[which]?;
         let beyond = self.beyond[junction as usize].as_ref()?;
-        let (_, hiding) = self.local(i, k, which)?;
+        let Local { hiding, .. } = self.local(i, k, which)?;
         Some(beyond.before(&hiding))
     }
 
@@ -294,7 +310,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         if !count.unambiguous {
             return;
         }
-        let Some((junction, hiding)) = self.local(i, k, which) else {
+        let Some(Local { junction, hiding }) = self.local(i, k, which) else {
             return;
         };
         let Some(beyond) = count.beyond(&hiding) else {
@@ -307,9 +323,9 @@ impl<'s, 'a> Carrying<'s, 'a> {
             }
             None => {
                 self.beyond[junction as usize] = Some(beyond);
-                let first = self.through.partition_point(|t| t.0 < junction);
-                let past = self.through.partition_point(|t| t.0 <= junction);
-                let others = self.through[first..past].iter().rev().map(|t| t.1);
+                let first = self.through.partition_point(|t| t.junction < junction);
+                let past = self.through.partition_point(|t| t.junction <= junction);
+                let others = self.through[first..past].iter().rev().map(|t| t.arc);
                 self.next.extend(others.filter(|&o| o != i as u32));
             }
         }

@@ -369,10 +369,10 @@ fn picture(prediction: &Prediction, below: Option<&Grey>) -> Canvas {
             });
         }
     }
-    for (k, (id, reason)) in reasons.iter().enumerate() {
-        let [x, y] = overlay::label_place(&prediction.arcs[*id as usize]);
+    for (k, overlay::MissingArc { arc, reason }) in reasons.iter().enumerate() {
+        let [x, y] = overlay::label_place(&prediction.arcs[*arc as usize]);
         let place = [x.clamp(-1e6, 1e6) as i32 + 3, y.clamp(-1e6, 1e6) as i32 - 9];
-        picture.write(place, height, &id.to_string(), overlay::MISSING);
+        picture.write(place, height, &arc.to_string(), overlay::MISSING);
         let row = (height + LINE * k + 1) as i32;
         picture.write([2, row], tall, reason, overlay::MISSING);
     }

@@ -1,6 +1,6 @@
 //! The light that a point of the part sends to the camera (equation 1 of the paper).
 
-use crate::image_arcs::lit_scene::StageError;
+use crate::image_arcs::lit_scene::{StageError, StageLight};
 use crate::image_arcs::pierce::front;
 use crate::image_arcs::{LitScene, RegionSample};
 use crate::prepared_part::PreparedPart;
@@ -99,7 +99,7 @@ impl<'s> Shading<'s> {
         finishes: &'s Finishes,
         conditions: &Conditions,
     ) -> Result<Self, SetupError> {
-        let lights = stage.lights.iter().map(|(source, _)| source);
+        let lights = stage.lights.iter().map(|light| &light.source);
         let strength: f64 = lights.clone().map(|source| source.strength()).sum();
         // Without lights the surroundings shine on a white surface from everywhere.
         let strength = if strength > 0.0 {
@@ -139,7 +139,9 @@ impl<'s> Shading<'s> {
             total: around,
             specular: 0.0,
         };
-        for (i, ((source, _), beam)) in self.stage.lights.iter().zip(&self.beams).enumerate() {
+        for (i, (StageLight { source, .. }, beam)) in
+            self.stage.lights.iter().zip(&self.beams).enumerate()
+        {
             if lit >> i & 1 == 0 {
                 continue;
             }
@@ -234,7 +236,7 @@ impl<'s> Shading<'s> {
             direction: into,
         } = self.place(at, face, hint)?;
         let normal = self.stage.subject.brep.outward(face, &p);
-        let towards = self.stage.lights[light].0.from(&p).direction;
+        let towards = self.stage.lights[light].source.from(&p).direction;
         let between = towards - into;
         (normal.dot(&towards) > 0.0).then(|| normal.dot(&between) / between.norm())
     }
@@ -256,7 +258,7 @@ impl<'s> Shading<'s> {
         };
         let normal = self.stage.subject.brep.outward(face, &point);
         let reaches = |i: &usize| {
-            let towards = self.stage.lights[*i].0.from(&point).direction;
+            let towards = self.stage.lights[*i].source.from(&point).direction;
             normal.dot(&towards) > 0.0 && self.stage.is_lit(*i, &point, face)
         };
         let lit = (0..self.stage.lights.len()).filter(reaches);

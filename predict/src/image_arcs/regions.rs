@@ -8,7 +8,9 @@
 
 use super::arc::{ArcSide, PredictedArc};
 use super::lit_scene::LitScene;
-use super::scanline::{APART, LINES, ScanlineCrossing, Scanlines, Sections, line_at, line_y};
+use super::scanline::{
+    APART, ArcSection, LINES, ScanlineCrossing, Scanlines, Sections, line_at, line_y,
+};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
@@ -237,7 +239,10 @@ impl Regions {
     /// there loses its content: arcs leave a gap that no scanline passes.
     fn check_sections(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
         for section in 0..self.sections.all.len() {
-            let (arc, [from, to]) = self.sections.all[section];
+            let ArcSection {
+                arc,
+                ends: [from, to],
+            } = self.sections.all[section];
             let line = &arcs[arc as usize].line;
             let middle = (from + to) / 2;
             let [a, b] = [line.points[middle], line.points[middle + 1]];
@@ -318,7 +323,7 @@ fn agrees(stage: &LitScene<'_>, content: &RegionSample, at: [f64; 2]) -> bool {
     };
     let normal = stage.subject.brep.outward(face, &p);
     (0..stage.lights.len()).all(|light| {
-        let towards = stage.lights[light].0.from(&p).direction;
+        let towards = stage.lights[light].source.from(&p).direction;
         let content = content.lit >> light & 1 == 1;
         normal.dot(&towards) <= GRAZING || stage.is_lit(light, &p, face) == content
     })
@@ -377,7 +382,7 @@ fn is_lit(
     points: &[Point3<f64>],
     votes: [u32; 2],
 ) -> Option<bool> {
-    let source = &stage.lights[light].0;
+    let source = &stage.lights[light].source;
     let turned = |p: &&Point3<f64>| {
         let towards = source.from(p).direction;
         stage.subject.brep.outward(face, p).dot(&towards) > GRAZING

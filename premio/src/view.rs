@@ -4,7 +4,7 @@ use crate::topology::{EdgeRef, FaceRef};
 use crate::write::{json_text, whole_file};
 use crate::{Camera, Error, Result, Solid};
 use nalgebra::Point3;
-use premio_drawing::sheet::{Sheet, SheetOptions, StandardView};
+use premio_drawing::sheet::{Sheet, SheetOptions, SheetView, StandardView};
 use premio_drawing::{Drawing, DrawingOptions, dxf, svg};
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::camera::projection::Projection;
@@ -328,11 +328,14 @@ impl Solid {
         drawing: &DrawingOptions,
         options: SheetOptions,
     ) -> Result<Sheet> {
-        let mut drawings: Vec<(Option<StandardView>, Drawing)> = Vec::new();
+        let mut drawings: Vec<SheetView> = Vec::new();
         for &view in views {
-            if !drawings.iter().any(|(known, _)| *known == Some(view)) {
+            if !drawings.iter().any(|known| known.view == Some(view)) {
                 let seen = self.view(&Camera::standard(view))?;
-                drawings.push((Some(view), seen.drawing(drawing)));
+                drawings.push(SheetView {
+                    view: Some(view),
+                    drawing: seen.drawing(drawing),
+                });
             }
         }
         Ok(Sheet::new(drawings, options)?)

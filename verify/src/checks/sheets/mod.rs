@@ -12,7 +12,7 @@ use super::images::Images;
 use super::strokes::{Strokes, point};
 use super::window::Window;
 use nalgebra::Point2;
-use premio_drawing::sheet::{self, Sheet, SheetError};
+use premio_drawing::sheet::{self, Sheet, SheetError, SheetView};
 use premio_drawing::{Drawing, Layer, Stroke, StrokeShape};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::unit::Unit;
@@ -115,7 +115,13 @@ impl SheetReport {
             scale: None,
             angle: sheet::Angle::First,
         };
-        let sheet = match Sheet::new(vec![(None, drawing)], how) {
+        let sheet = match Sheet::new(
+            vec![SheetView {
+                view: None,
+                drawing,
+            }],
+            how,
+        ) {
             Ok(sheet) => sheet,
             // Nothing is drawn.
             Err(SheetError::Size { .. }) => return,

@@ -46,7 +46,7 @@ pub struct ArcMaker<'c> {
 impl<'c> ArcMaker<'c> {
     /// The image of a point of a contour, with y up.
     pub fn point(&self, contour: &Contour, t: f64) -> Point2<f64> {
-        self.projection.project_y_up(&contour.curve3.point(t))
+        self.projection.project_y_up(&contour.space_curve.point(t))
     }
 
     /// The image arcs of a contour. A contour seen end-on has none.
@@ -60,7 +60,7 @@ impl<'c> ArcMaker<'c> {
                     visible,
                 });
             };
-            match &contour.curve2 {
+            match &contour.image_curve {
                 ImageCurve::Point { .. } => {}
                 ImageCurve::Line { .. } => put(self.segment(contour, range)),
                 ImageCurve::Conic { coefficients } => {
@@ -82,13 +82,13 @@ impl<'c> ArcMaker<'c> {
         for piece in &contour.pieces {
             let goes_on = before.is_some_and(|before| {
                 before.visible == piece.visible
-                    && before.t[1] == piece.t[0]
+                    && before.range[1] == piece.range[0]
                     && !self.folds(contour, before, piece)
             });
             match runs.last_mut() {
-                Some(run) if goes_on => run.range[1] = piece.t[1],
+                Some(run) if goes_on => run.range[1] = piece.range[1],
                 _ => runs.push(Run {
-                    range: piece.t,
+                    range: piece.range,
                     visible: piece.visible,
                 }),
             }
@@ -99,7 +99,7 @@ impl<'c> ArcMaker<'c> {
 
     /// Whether the image folds back from one piece to the next. On a line that makes no difference.
     fn folds(&self, contour: &Contour, before: &ContourPiece, after: &ContourPiece) -> bool {
-        if matches!(contour.curve2, ImageCurve::Line { .. }) {
+        if matches!(contour.image_curve, ImageCurve::Line { .. }) {
             return false;
         }
         let junction = before
@@ -108,10 +108,10 @@ impl<'c> ArcMaker<'c> {
         if junction.is_some_and(|j| j.kind == JunctionKind::ImageTurn) {
             return true;
         }
-        let t = before.t[1];
+        let t = before.range[1];
         let next_to = [
-            t - (t - before.t[0]) * NEXT_TO,
-            t + (after.t[1] - t) * NEXT_TO,
+            t - (t - before.range[0]) * NEXT_TO,
+            t + (after.range[1] - t) * NEXT_TO,
         ];
         let [p, q] = next_to.map(|s| self.point(contour, s));
         let at = self.point(contour, t);
@@ -121,8 +121,12 @@ impl<'c> ArcMaker<'c> {
     /// The segment that an image on a line covers.
     fn segment(&self, contour: &Contour, [lo, hi]: [f64; 2]) -> ImageArc<'c> {
         let mut stops = vec![lo, hi];
-        if !matches!(contour.curve3, Curve::Line(_)) {
-            stops.extend(folds_of_conic(&contour.curve3, [lo, hi], self.projection));
+        if !matches!(contour.space_curve, Curve::Line(_)) {
+            stops.extend(folds_of_conic(
+                &contour.space_curve,
+                [lo, hi],
+                self.projection,
+            ));
         }
         let points: Vec<Point2<f64>> = stops.iter().map(|&t| self.point(contour, t)).collect();
         let pairs = points
@@ -144,7 +148,7 @@ impl<'c> ArcMaker<'c> {
     ) -> Option<ImageArc<'c>> {
         let flip = if self.projection.y_down { -1.0 } else { 1.0 };
         let up = Matrix3::from_diagonal(&Vector3::new(1.0, flip, 1.0));
-        let ellipse = match map_of_ellipse(&contour.curve3, self.projection) {
+        let ellipse = match map_of_ellipse(&contour.space_curve, self.projection) {
             Some(map) => ImageEllipse::from_map(&(up * self.projection.in_units(&map)))?,
             None => {
                 let six = [k[0], k[1] * flip, k[2], k[3], k[4] * flip, k[5]];
@@ -153,10 +157,10 @@ impl<'c> ArcMaker<'c> {
         };
         (ellipse.ratio > THIN).then_some(())?;
         let is_whole = |p: f64| hi - lo >= p * (1.0 - ROUNDING);
-        let is_conic = matches!(contour.curve3, Curve::Circle(_) | Curve::Ellipse(_));
+        let is_conic = matches!(contour.space_curve, Curve::Circle(_) | Curve::Ellipse(_));
         let angle = |t: f64| ellipse.angle(&self.point(contour, t));
         let from = angle(lo);
-        if is_conic && contour.curve3.period().is_some_and(is_whole) {
+        if is_conic && contour.space_curve.period().is_some_and(is_whole) {
             let range = [from, from + TAU];
             return Some(ImageArc::Elliptic { ellipse, range });
         }
@@ -170,11 +174,11 @@ impl<'c> ArcMaker<'c> {
             point: self.point(contour, t),
         };
         let mut samples = vec![sample(lo)];
-        for pair in contour.curve3.breaks(lo, hi).windows(2) {
+        for pair in contour.space_curve.breaks(lo, hi).windows(2) {
             let ends = [sample(pair[0]), sample(pair[1])];
             self.refine(&sample, ends, 0, &mut samples);
         }
-        let (projection, curve) = (self.projection, &contour.curve3);
+        let (projection, curve) = (self.projection, &contour.space_curve);
         let image = move |t: f64| projection.project_y_up(&curve.point(t));
         ImageArc::Projected {
             curve: Rc::new(image),

@@ -172,7 +172,7 @@ fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = (&'c Contour, f6
     let of = |contour: &'c Contour| {
         let pieces = contour.pieces.iter();
         pieces.flat_map(move |piece| {
-            let [a, b] = piece.t;
+            let [a, b] = piece.range;
             (0..=PLACES).map(move |k| (contour, a + (b - a) * f64::from(k) / f64::from(PLACES)))
         })
     };
@@ -196,7 +196,7 @@ fn extent(maker: &ArcMaker<'_>, contours: &[&Contour]) -> [Point2<f64>; 2] {
 /// The part's resolution in the image, where it is largest.
 fn resolution(maker: &ArcMaker<'_>, contours: &[&Contour]) -> f64 {
     let scale = places(contours).map(|(contour, t)| {
-        let p = contour.curve3.point(t);
+        let p = contour.space_curve.point(t);
         maker.projection.magnification(&p)
     });
     scale.fold(0.0, f64::max) * maker.contours.resolution

@@ -296,15 +296,29 @@ const GAP: f64 = 12.0;
 /// origins.
 type Bands = BTreeMap<i32, [f64; 2]>;
 
+/// A drawing to be placed on a sheet.
+#[derive(Clone, Debug)]
+pub struct SheetView {
+    /// The view that it shows; none for another viewpoint.
+    pub view: Option<StandardView>,
+    /// The drawing.
+    pub drawing: Drawing,
+}
+
+/// How large the views of a sheet are.
+struct Fit {
+    /// The millimetres of an image unit.
+    factor: f64,
+    /// The corresponding scale; none where the views have none.
+    scale: Option<Scale>,
+}
+
 impl Sheet {
     /// Places views on a paper. A view without a name must be the only one.
-    pub fn new(
-        views: Vec<(Option<StandardView>, Drawing)>,
-        options: SheetOptions,
-    ) -> Result<Self, SheetError> {
+    pub fn new(views: Vec<SheetView>, options: SheetOptions) -> Result<Self, SheetError> {
         let cell = |view: Option<StandardView>| view.map_or([0, 0], |v| options.angle.cell(v));
         let mut resolutions: [Bands; 2] = Default::default();
-        for (view, drawing) in &views {
+        for SheetView { view, drawing } in &views {
             let [low, high] = drawing.extent;
             for (axis, resolutions) in resolutions.iter_mut().enumerate() {
                 let nothing = [f64::NEG_INFINITY; 2];
@@ -314,16 +328,16 @@ impl Sheet {
             }
         }
         let [low, high] = room(options.paper);
-        let to_scale = views.iter().all(|(_, drawing)| drawing.to_scale);
+        let to_scale = views.iter().all(|view| view.drawing.to_scale);
         let taken = resolutions.each_ref().map(|b| b.values().flatten().sum());
         let gaps = resolutions.each_ref().map(|b| (b.len() + 1) as f64 * GAP);
-        let (factor, scale) = fitted(taken, gaps, high - low, to_scale, &options)?;
+        let Fit { factor, scale } = fitted(taken, gaps, high - low, to_scale, &options)?;
         let places = [0, 1].map(|axis: usize| {
             let free = (high - low)[axis] - taken[axis] * factor;
             let gap = free / (resolutions[axis].len() + 1) as f64;
             origins(&resolutions[axis], low[axis], gap, factor)
         });
-        let placed = views.into_iter().map(|(view, drawing)| {
+        let placed = views.into_iter().map(|SheetView { view, drawing }| {
             let [column, row] = cell(view);
             PlacedView {
                 name: view.map_or("view", StandardView::name),
@@ -348,14 +362,14 @@ fn room(paper: Paper) -> [Vector2<f64>; 2] {
     [low, paper.size() - Vector2::new(MARGIN, MARGIN)]
 }
 
-/// The millimetres of an image unit, and the corresponding scale.
+/// The largest size in which views fit, or that of the requested scale.
 fn fitted(
     taken: [f64; 2],
     gaps: [f64; 2],
     room: Vector2<f64>,
     to_scale: bool,
     options: &SheetOptions,
-) -> Result<(f64, Option<Scale>), SheetError> {
+) -> Result<Fit, SheetError> {
     let fits = |axis: usize| (room[axis] - gaps[axis]) / taken[axis];
     let most = fits(0).min(fits(1));
     let size = taken[0].max(taken[1]) * options.unit.millimetres();
@@ -365,7 +379,10 @@ fn fitted(
     if !to_scale {
         return match options.scale {
             Some(_) => Err(SheetError::Perspective),
-            None => Ok((most, None)),
+            None => Ok(Fit {
+                factor: most,
+                scale: None,
+            }),
         };
     }
     let scale = match options.scale {
@@ -386,7 +403,10 @@ fn fitted(
             room_height: room.y,
         });
     }
-    Ok((factor, Some(scale)))
+    Ok(Fit {
+        factor,
+        scale: Some(scale),
+    })
 }
 
 /// The origins of columns, or of rows, one after the other, with the gap before and between them.
@@ -480,116 +500,4 @@ fn symbol(middle: Point2<f64>, angle: Angle) -> Vec<SheetMark> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A drawing of a box about the origin, with no strokes.
-    fn drawing(width: f64, height: f64) -> Drawing {
-        let high = Point2::new(width / 2.0, height / 2.0);
-        Drawing {
-            strokes: Vec::new(),
-            extent: [-high, high],
-            distance: 1.0,
-            tolerance: 0.0,
-            to_scale: true,
-        }
-    }
-
-    /// The views of a block of 60 by 40 by 20.
-    fn views() -> Vec<(Option<StandardView>, Drawing)> {
-        vec![
-            (Some(StandardView::Front), drawing(60.0, 20.0)),
-            (Some(StandardView::Top), drawing(60.0, 40.0)),
-            (Some(StandardView::Right), drawing(40.0, 20.0)),
-        ]
-    }
-
-    fn options(angle: Angle) -> SheetOptions {
-        SheetOptions {
-            title: "block".to_owned(),
-            unit: Unit::Millimetre,
-            paper: Paper::A3,
-            scale: None,
-            angle,
-        }
-    }
-
-    fn place(sheet: &Sheet, name: &str) -> Point2<f64> {
-        let mut views = sheet.views.iter();
-        views
-            .find(|v| v.name == name)
-            .map(|v| v.at)
-            .unwrap_or_default()
-    }
-
-    #[test]
-    fn views_stand_where_the_angle_has_them() {
-        for (angle, side) in [(Angle::First, -1.0), (Angle::Third, 1.0)] {
-            let sheet = Sheet::new(views(), options(angle)).unwrap();
-            let [front, top, right] = ["front", "top", "right"].map(|n| place(&sheet, n));
-            assert_eq!(front.x, top.x);
-            assert_eq!(front.y, right.y);
-            assert!((top.y - front.y) * side > 30.0 * sheet.factor);
-            assert!((right.x - front.x) * side > 50.0 * sheet.factor);
-        }
-    }
-
-    /// 390 mm fit 100 mm and three gaps of 12 mm 3.5 times, 253 mm fit 60 mm 3.6 times.
-    #[test]
-    fn the_scale_is_the_greatest_with_room() {
-        let sheet = Sheet::new(views(), options(Angle::First)).unwrap();
-        assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("2:1"));
-        assert_eq!(sheet.factor, 2.0);
-        let metres = SheetOptions {
-            unit: Unit::Metre,
-            ..options(Angle::First)
-        };
-        let sheet = Sheet::new(views(), metres.clone()).unwrap();
-        assert_eq!(sheet.scale.map(|s| s.to_string()).as_deref(), Some("1:500"));
-        let too_large = SheetOptions {
-            scale: Some(Scale {
-                drawn: 1.0,
-                of: 200.0,
-            }),
-            ..metres
-        };
-        let error = Sheet::new(views(), too_large).unwrap_err();
-        assert!(matches!(error, SheetError::Room { width, .. } if width == 536.0));
-    }
-
-    /// A part that the optical axis does not pass through is still placed in the middle of the
-    /// paper.
-    #[test]
-    fn a_view_beside_its_axis_has_the_paper_for_itself() {
-        let beside = Drawing {
-            extent: [Point2::new(1000.0, 0.0), Point2::new(1100.0, 10.0)],
-            ..drawing(0.0, 0.0)
-        };
-        let sheet = Sheet::new(vec![(None, beside)], options(Angle::First)).unwrap();
-        assert_eq!(sheet.factor, 2.0);
-        let middle = sheet.views[0].at.x + 1050.0 * sheet.factor;
-        assert_eq!(middle, (FILING + 410.0) / 2.0);
-    }
-
-    #[test]
-    fn scales_are_those_of_the_standard() {
-        for (ratio, expected) in [
-            (1.0, "1:1"),
-            (1.99, "1:1"),
-            (7.0, "5:1"),
-            (99.0, "50:1"),
-            (0.99, "1:2"),
-            (0.2, "1:5"),
-            (0.0011, "1:1000"),
-        ] {
-            assert_eq!(Scale::at_most(ratio).to_string(), expected);
-        }
-    }
-
-    #[test]
-    fn what_has_no_size_has_no_scale() {
-        let point = vec![(Some(StandardView::Front), drawing(0.0, 0.0))];
-        let error = Sheet::new(point, options(Angle::First)).unwrap_err();
-        assert_eq!(error, SheetError::Size { size: 0.0 });
-    }
-}
+mod tests;

@@ -72,8 +72,8 @@ fn strokes_follow_the_contours_within_the_distance() {
     for contour in &c.contours {
         for piece in &contour.pieces {
             for k in 0..=10 {
-                let t = piece.t[0] + (piece.t[1] - piece.t[0]) * f64::from(k) / 10.0;
-                let p = projection.project(&contour.curve3.point(t));
+                let t = piece.range[0] + (piece.range[1] - piece.range[0]) * f64::from(k) / 10.0;
+                let p = projection.project(&contour.space_curve.point(t));
                 assert!(away(&p, &drawing) <= drawing.distance, "{contour:?} {t}");
             }
         }

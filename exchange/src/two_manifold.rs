@@ -34,6 +34,15 @@ pub struct SeamedEdge<'a> {
     pub ends: [usize; 2],
 }
 
+/// One side of an edge, in a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct HalfEdge {
+    /// The index of the edge.
+    pub edge: usize,
+    /// The sense in which the loop runs along it.
+    pub sense: Sense,
+}
+
 /// A face that does not close around its surface.
 #[derive(Clone, Debug)]
 pub struct SeamedFace {
@@ -43,9 +52,8 @@ pub struct SeamedFace {
     pub window: ParameterWindow,
     /// Whether the outward normal is the surface's own.
     pub sense: Sense,
-    /// The loops, the outer one first: edges with their sense in the loop. The face is to the left
-    /// as seen from outside.
-    pub loops: Vec<Vec<(usize, Sense)>>,
+    /// The loops, the outer one first. The face is to the left as seen from outside.
+    pub loops: Vec<Vec<HalfEdge>>,
 }
 
 /// A boundary with seams.

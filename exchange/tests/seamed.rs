@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_exchange::step;
-use premio_exchange::two_manifold::{SeamError, TwoManifold};
+use premio_exchange::two_manifold::{HalfEdge, SeamError, TwoManifold};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::unit::Unit;
 use std::collections::HashMap;
@@ -90,7 +90,7 @@ fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
     for face in &seamed.faces {
         assert!(!face.loops.is_empty(), "{name}");
         for ring in &face.loops {
-            let ends = |(edge, sense): (usize, Sense)| {
+            let ends = |HalfEdge { edge, sense }: HalfEdge| {
                 let [a, b] = seamed.edges[edge].ends;
                 match sense {
                     Sense::Along => [a, b],
@@ -100,7 +100,7 @@ fn is_sound(name: &str, seamed: &TwoManifold<'_>) {
             let after = ring.iter().cycle().skip(1);
             for (one, next) in ring.iter().zip(after) {
                 assert_eq!(ends(*one)[1], ends(*next)[0], "{name}");
-                sides.entry(one.0).or_default().push(one.1);
+                sides.entry(one.edge).or_default().push(one.sense);
             }
         }
     }

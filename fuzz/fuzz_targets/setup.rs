@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use nalgebra::Point3;
-use premio_predict::setup::light::LightSource;
+use premio_predict::setup::light::{IncidentLight, LightSource};
 use premio_predict::setup::setups::Setups;
 use premio_predict::setup::{Setup, SetupError};
 
@@ -50,7 +50,10 @@ fn used(setup: &Setup) {
         assert!(matrices.camera().is_ok());
     }
     for light in &setup.lights {
-        let (direction, strength) = LightSource::new(light, &Point3::origin()).from(&centre);
+        let IncidentLight {
+            direction,
+            strength,
+        } = LightSource::new(light, &Point3::origin()).from(&centre);
         // A light may be at the point itself.
         let length = direction.norm();
         assert!(length.is_nan() || (length - 1.0).abs() < 1e-9, "{light:?}");

@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     for contour in &seen.contours {
-        let ranges = contour.pieces.iter().map(|piece| piece.t);
+        let ranges = contour.pieces.iter().map(|piece| piece.range);
         let ordered = ranges.clone().all(|[lo, hi]| lo < hi)
             && ranges
                 .clone()

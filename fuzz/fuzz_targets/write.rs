@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use premio_csg::object_model::ObjectModel;
-use premio_drawing::sheet::{self, Sheet, StandardView};
+use premio_drawing::sheet::{self, Sheet, SheetView, StandardView};
 use premio_drawing::{Drawing, dxf, svg};
 use premio_exchange::mesh::{Facets, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
@@ -178,7 +178,10 @@ fn drawings(part: &Part, sight: &Sight, name: &str) {
         scale: None,
         angle: sheet::Angle::First,
     };
-    let views = vec![(Some(StandardView::Front), view())];
+    let views = vec![SheetView {
+        view: Some(StandardView::Front),
+        drawing: view(),
+    }];
     if let Ok(sheet) = Sheet::new(views, titled) {
         document(&svg::write_sheet(&sheet), "path");
         groups(&dxf::write_sheet(&sheet));

@@ -15,6 +15,15 @@ const MOVED: [f64; 3] = [24.0, 12.0, 6.0];
 /// positions that were not searched.
 const EXPECTED: f64 = 6.0;
 
+/// The result for an image of a sequence.
+#[derive(Clone, Debug)]
+pub struct TrackResult {
+    /// The result.
+    pub result: SearchResult,
+    /// Whether the whole image was searched.
+    pub anew: bool,
+}
+
 impl Matcher<'_> {
     /// The match found from the last pose; none if the part is lost.
     pub fn follow(&self, last: &Isometry3<f64>) -> Option<PartMatch> {
@@ -43,17 +52,23 @@ impl Matcher<'_> {
         all.min_by(PartMatch::order)
     }
 
-    /// The result for an image of a sequence, and whether the whole image was searched.
-    pub fn next(&self, last: Option<&Isometry3<f64>>) -> (SearchResult, bool) {
+    /// The result for the next image of a sequence.
+    pub fn next(&self, last: Option<&Isometry3<f64>>) -> TrackResult {
         match last.and_then(|p| self.follow(p)) {
             Some(found) => {
                 let finding = SearchResult {
                     matches: vec![found],
                     ..SearchResult::default()
                 };
-                (finding, false)
+                TrackResult {
+                    result: finding,
+                    anew: false,
+                }
             }
-            None => (self.find(), true),
+            None => TrackResult {
+                result: self.find(),
+                anew: true,
+            },
         }
     }
 }

@@ -180,8 +180,17 @@ fn shown_label(arc: &ArcLevel, size: [f64; 2]) -> [f64; 2] {
     [x.clamp(0.0, size[0]), y.clamp(0.0, size[1])]
 }
 
-/// The arcs of a prediction that are not whole, each with the reason.
-pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
+/// An arc that is not detected as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingArc {
+    /// Its index in the prediction.
+    pub arc: u32,
+    /// Its name, its state and the reason.
+    pub reason: String,
+}
+
+/// The arcs of a prediction that are not whole.
+pub fn missing(prediction: &Prediction) -> Vec<MissingArc> {
     let features = prediction
         .arcs
         .iter()
@@ -189,10 +198,10 @@ pub fn missing(prediction: &Prediction) -> Vec<(u32, String)> {
     let labels = features.filter_map(|arc| {
         let reason = arc.reason?;
         let word = arc.source.word();
-        Some((
-            arc.id,
-            format!("{}: {word} {}, {reason}", arc.id, arc.state.word()),
-        ))
+        Some(MissingArc {
+            arc: arc.id,
+            reason: format!("{}: {word} {}, {reason}", arc.id, arc.state.word()),
+        })
     });
     labels.collect()
 }
@@ -218,7 +227,7 @@ pub fn svg(prediction: &Prediction) -> String {
     for stroke in strokes(prediction) {
         path(&stroke, prediction, &mut out);
     }
-    for (id, _) in &reasons {
+    for MissingArc { arc: id, .. } in &reasons {
         let arc = &prediction.arcs[*id as usize];
         let [x, y] = shown_label(arc, [width, height].map(|n| n as f64));
         let _ = writeln!(
@@ -229,7 +238,7 @@ pub fn svg(prediction: &Prediction) -> String {
         );
     }
     key(width, height, &mut out);
-    for (k, (_, reason)) in reasons.iter().enumerate() {
+    for (k, MissingArc { reason, .. }) in reasons.iter().enumerate() {
         let y = height + 14 * (k + 2);
         let _ = writeln!(out, "<text x=\"4\" y=\"{y}\">{reason}</text>");
     }

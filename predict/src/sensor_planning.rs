@@ -63,6 +63,15 @@ impl Score {
     }
 }
 
+/// A setup with its score.
+#[derive(Clone, Debug)]
+pub struct ScoredPlacing {
+    /// The setup.
+    pub placing: Placing,
+    /// Its score.
+    pub score: Score,
+}
+
 /// The scorer of a part's setups.
 #[derive(Clone, Copy, Debug)]
 pub struct SetupScorer<'s> {
@@ -93,25 +102,23 @@ impl SetupScorer<'_> {
 
     /// Moves the setup as long as its score improves, by steps from an angle (radians) down to a
     /// sixteenth of it.
-    pub fn refined(
-        &self,
-        from: (Placing, Score),
-        angle: f64,
-        memory: &mut Memory,
-    ) -> (Placing, Score) {
-        let (mut placing, mut score) = from;
+    pub fn refined(&self, from: ScoredPlacing, angle: f64, memory: &mut Memory) -> ScoredPlacing {
+        let mut best = from;
         let mut step = angle;
         while step > angle / 16.0 {
-            let better = neighbours(&placing, step).into_iter().find_map(|other| {
-                let moved = self.score(&other, memory).ok()?;
-                (self.value(&moved) > self.value(&score)).then_some((other, moved))
-            });
+            let better = neighbours(&best.placing, step)
+                .into_iter()
+                .find_map(|placing| {
+                    let score = self.score(&placing, memory).ok()?;
+                    let is_better = self.value(&score) > self.value(&best.score);
+                    is_better.then_some(ScoredPlacing { placing, score })
+                });
             match better {
-                Some(found) => (placing, score) = found,
+                Some(found) => best = found,
                 None => step *= 0.5,
             }
         }
-        (placing, score)
+        best
     }
 }
 

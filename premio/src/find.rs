@@ -7,12 +7,13 @@ use nalgebra::Isometry3;
 use premio_detect::{Detector, Grey};
 use premio_kernel::brep::Brep;
 use premio_matching::camera::{CameraFile, Pinhole};
-use premio_matching::image::{ImageFeatures, detector, downsampled};
+use premio_matching::image::{DownsampledImage, ImageFeatures, detector, downsampled};
 use premio_matching::matcher::Matcher;
 use premio_matching::output::explain::explained;
 use premio_matching::output::report::{MatchReport, MatchSeconds, Pose};
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
+use premio_matching::tracker::TrackResult;
 use premio_matching::verification::part_match::{PartMatch, SearchOptions, SearchResult};
 use std::fmt;
 use std::time::Instant;
@@ -243,7 +244,11 @@ impl<'s> PartFinder<'s> {
         look: impl FnOnce(&Matcher<'_>) -> (SearchResult, Option<bool>),
     ) -> PictureMatch {
         let started = Instant::now();
-        let (grey, camera, scale) = downsampled(picture, camera);
+        let DownsampledImage {
+            grey,
+            camera,
+            scale,
+        } = downsampled(picture, camera);
         let features = ImageFeatures::new(&grey, &self.detector);
         let detecting = started.elapsed().as_secs_f64();
         let matcher = Matcher {
@@ -259,7 +264,7 @@ impl<'s> PartFinder<'s> {
             matching: started.elapsed().as_secs_f64() - detecting,
         };
         let names = [name, &self.name];
-        let mut report = MatchReport::new(&self.part, names, &features, &result, (scale, seconds));
+        let mut report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
         report.anew = anew;
         PictureMatch {
             grey,
@@ -351,7 +356,7 @@ impl PartTracker<'_> {
     pub fn next_with(&mut self, picture: Grey, camera: Pinhole, name: &str) -> PictureMatch {
         let last = self.last;
         let found = self.finder.find_with(picture, camera, name, |matcher| {
-            let (result, anew) = matcher.next(last.as_ref());
+            let TrackResult { result, anew } = matcher.next(last.as_ref());
             (result, Some(anew))
         });
         let accepted = found.best().filter(|m| m.is_accepted());

@@ -119,7 +119,7 @@ impl Model {
             &solid.resolution().to_bits().to_le_bytes(),
             serde_json::to_string(setups)?.as_bytes(),
         ]);
-        let all = records(&summary, (&name, &description), &digest, setups);
+        let all = records(&summary, &name, &description, &digest, setups);
         Self::from_text(text(&all)?)
     }
 

@@ -324,7 +324,7 @@ pub(crate) fn draw_match(
     for arc in &found.arcs {
         let missed = is(&arc.source).is_some_and(|p| p.found.is_none());
         let colour = if missed { overlay::MISSING } else { FOUND };
-        for (k, (_, seen)) in arc.points.iter().enumerate() {
+        for (k, seen) in arc.points.iter().map(|p| &p.image).enumerate() {
             if !(missed && k / 2 % 2 == 1) {
                 let [x, y] = [seen.at.x, seen.at.y].map(|v| v.clamp(-1e6, 1e6).round() as i32);
                 for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
@@ -369,10 +369,10 @@ fn picture(prediction: &Prediction, below: Option<&Grey>) -> Canvas {
             });
         }
     }
-    for (k, (id, reason)) in reasons.iter().enumerate() {
-        let [x, y] = overlay::label_place(&prediction.arcs[*id as usize]);
+    for (k, overlay::MissingArc { arc, reason }) in reasons.iter().enumerate() {
+        let [x, y] = overlay::label_place(&prediction.arcs[*arc as usize]);
         let place = [x.clamp(-1e6, 1e6) as i32 + 3, y.clamp(-1e6, 1e6) as i32 - 9];
-        picture.write(place, height, &id.to_string(), overlay::MISSING);
+        picture.write(place, height, &arc.to_string(), overlay::MISSING);
         let row = (height + LINE * k + 1) as i32;
         picture.write([2, row], tall, reason, overlay::MISSING);
     }

@@ -96,7 +96,7 @@ impl PredictionAgreement {
     pub fn new(draft: &PredictedImage<'_>, setup: &Setup, picture: &Grey) -> Self {
         let prediction = prediction(draft, setup);
         let all = PixelMask::full(picture.width, picture.height);
-        let (_, found) = draft.evidence_in(picture, &all);
+        let found = draft.evidence_in(picture, &all).arcs;
         let shortest = setup.conditions.detector.shortest;
         let features = matches(&prediction.arcs, &found, shortest);
         let outline =

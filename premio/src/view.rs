@@ -4,7 +4,7 @@ use crate::topology::{EdgeRef, FaceRef};
 use crate::write::{json_text, whole_file};
 use crate::{Camera, Error, Result, Solid};
 use nalgebra::Point3;
-use premio_drawing::sheet::{Sheet, SheetOptions, StandardView};
+use premio_drawing::sheet::{Sheet, SheetOptions, SheetView, StandardView};
 use premio_drawing::{Drawing, DrawingOptions, dxf, svg};
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::camera::projection::Projection;
@@ -328,11 +328,14 @@ impl Solid {
         drawing: &DrawingOptions,
         options: SheetOptions,
     ) -> Result<Sheet> {
-        let mut drawings: Vec<(Option<StandardView>, Drawing)> = Vec::new();
+        let mut drawings: Vec<SheetView> = Vec::new();
         for &view in views {
-            if !drawings.iter().any(|(known, _)| *known == Some(view)) {
+            if !drawings.iter().any(|known| known.view == Some(view)) {
                 let seen = self.view(&Camera::standard(view))?;
-                drawings.push((Some(view), seen.drawing(drawing)));
+                drawings.push(SheetView {
+                    view: Some(view),
+                    drawing: seen.drawing(drawing),
+                });
             }
         }
         Ok(Sheet::new(drawings, options)?)
@@ -404,7 +407,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn quantitative_invisibility(self) -> u32 {
-        self.piece.qi
+        self.piece.quantitative_invisibility
     }
 
     /// The face in front of the arc that is nearest to the eye.
@@ -501,7 +504,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn image_curve(self) -> &'v ImageCurve {
-        &self.contour.curve2
+        &self.contour.image_curve
     }
 
     /// The curve in space.
@@ -516,7 +519,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn space_curve(self) -> &'v Curve {
-        &self.contour.curve3
+        &self.contour.space_curve
     }
 
     /// The range of the space curve's parameter, increasing; it may pass the end of a period.
@@ -531,7 +534,7 @@ impl<'v> ViewArc<'v> {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn range(self) -> [f64; 2] {
-        self.piece.t
+        self.piece.range
     }
 
     /// The junctions at the start and the end; none of a whole closed contour.

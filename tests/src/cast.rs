@@ -145,7 +145,9 @@ impl Cast {
             for (index, piece) in contour.pieces.iter().enumerate() {
                 for part in SAMPLES {
                     match self.before(&projection, contour, piece, part) {
-                        Some([least, most]) if (least..=most).contains(&piece.qi) => {
+                        Some([least, most])
+                            if (least..=most).contains(&piece.quantitative_invisibility) =>
+                        {
                             counted.agreed += 1;
                         }
                         Some([least, most])
@@ -153,7 +155,7 @@ impl Cast {
                         {
                             counted.wrong.push(format!(
                                 "contour {} piece {index} over {:?}: {} for {least} to {most}",
-                                contour.id, piece.t, piece.qi
+                                contour.id, piece.range, piece.quantitative_invisibility
                             ));
                         }
                         _ => counted.unclear += 1,
@@ -228,9 +230,9 @@ impl Cast {
         seen.contours.iter().any(|other| {
             other.pieces.iter().any(|near| {
                 (0..=POINTS).any(|k| {
-                    let [lo, hi] = near.t;
+                    let [lo, hi] = near.range;
                     let t = lo + (hi - lo) * f64::from(k) / f64::from(POINTS);
-                    let q = other.curve3.point(t);
+                    let q = other.space_curve.point(t);
                     let own = other.id == contour.id && (q - p).norm() < 8.0 * margin;
                     let d = frame.components(&(q - p));
                     !own && d.x.hypot(d.y) < margin
@@ -267,10 +269,10 @@ fn sample(
     piece: &ContourPiece,
     part: f64,
 ) -> (Point3<f64>, Frame, f64) {
-    let [lo, hi] = piece.t;
-    let p = contour.curve3.point(lo + part * (hi - lo));
-    let (towards, reach) = projection.towards_eye(&p);
-    (p, Frame::about(p, towards), reach)
+    let [lo, hi] = piece.range;
+    let p = contour.space_curve.point(lo + part * (hi - lo));
+    let eye = projection.towards_eye(&p);
+    (p, Frame::about(p, eye.direction), eye.distance)
 }
 
 fn single(v: Vector3<f64>) -> Vec3A {

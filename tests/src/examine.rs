@@ -143,17 +143,20 @@ pub fn differences(evaluation: &Evaluation, name: &str, camera: &ViewCamera) -> 
     }
     let both = carried.contours.iter().zip(&counted.contours);
     let differ = |contour: &Contour, a: &ContourPiece, b: &ContourPiece| {
-        let apart = a.qi.abs_diff(b.qi) as usize;
+        let apart = a
+            .quantitative_invisibility
+            .abs_diff(b.quantitative_invisibility) as usize;
         let is_decided = || apart > lies_on(evaluation, contour, a);
-        a.t != b.t || is_decided() && apart > passing(evaluation, &carried, contour, a, camera)
+        a.range != b.range
+            || is_decided() && apart > passing(evaluation, &carried, contour, a, camera)
     };
     both.flat_map(|(a, b)| a.pieces.iter().zip(&b.pieces).map(move |pair| (a, pair)))
         .find(|(contour, (a, b))| differ(contour, a, b))
         .map(|(contour, (a, b))| {
-            let (id, [from, to]) = (contour.id, a.t);
+            let (id, [from, to]) = (contour.id, a.range);
             format!(
                 "methods in {name}: contour {id} from {from} to {to}: carried {}, counted {} from {} to {}",
-                a.qi, b.qi, b.t[0], b.t[1]
+                a.quantitative_invisibility, b.quantitative_invisibility, b.range[0], b.range[1]
             )
         })
 }
@@ -167,10 +170,10 @@ fn passing(
     piece: &ContourPiece,
     camera: &ViewCamera,
 ) -> usize {
-    let [lo, hi] = piece.t;
-    let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
+    let [lo, hi] = piece.range;
+    let p = contour.space_curve.point(lo + (hi - lo) * COUNTED_AT);
     let size = evaluation.bounds.diagonal();
-    let (v, _) = Projection::new(camera, size).towards_eye(&p);
+    let v = Projection::new(camera, size).towards_eye(&p).direction;
     let away = |q: Point3<f64>| (q - p).cross(&v).norm();
     // Another part of the contour itself counts if it is clearly closer to the eye.
     let before = |other: &Contour, q: Point3<f64>| {
@@ -178,8 +181,12 @@ fn passing(
         (q - p).dot(&v) > if own { size / f64::from(POINTS) } else { 0.0 }
     };
     let passes = |other: &Contour, near: &ContourPiece| {
-        let [lo, hi] = near.t;
-        let at = |k: f64| other.curve3.point(lo + (hi - lo) * (k / f64::from(POINTS)));
+        let [lo, hi] = near.range;
+        let at = |k: f64| {
+            other
+                .space_curve
+                .point(lo + (hi - lo) * (k / f64::from(POINTS)))
+        };
         let samples = (0..=POINTS)
             .map(f64::from)
             .filter(|&k| before(other, at(k)));
@@ -204,8 +211,8 @@ fn passing(
 /// is counted. Whether these are in front of the piece is ambiguous.
 fn lies_on(evaluation: &Evaluation, contour: &Contour, piece: &ContourPiece) -> usize {
     let (brep, resolution) = (&evaluation.brep, evaluation.resolution);
-    let [lo, hi] = piece.t;
-    let p = contour.curve3.point(lo + (hi - lo) * COUNTED_AT);
+    let [lo, hi] = piece.range;
+    let p = contour.space_curve.point(lo + (hi - lo) * COUNTED_AT);
     let others = brep.topology.face_ids();
     let others = others.filter(|f| !contour.faces.contains(f));
     let on = others.filter(|&f| {

@@ -67,15 +67,17 @@ type Shares = BTreeMap<(bool, bool, u32), Share>;
 /// changes. A contour seen end-on has no length, and lies on whatever passes there.
 fn shares(seen: &Contours) -> Shares {
     let mut shares = Shares::new();
-    let is_seen = |c: &&Contour| !matches!(c.curve2, ImageCurve::Point { .. });
+    let is_seen = |c: &&Contour| !matches!(c.image_curve, ImageCurve::Point { .. });
     for contour in seen.contours.iter().filter(is_seen) {
         let limb = contour.kind == ContourKind::Limb;
         for piece in &contour.pieces {
-            let share = shares.entry((limb, contour.smooth, piece.qi)).or_default();
-            let [lo, hi] = piece.t;
+            let share = shares
+                .entry((limb, contour.smooth, piece.quantitative_invisibility))
+                .or_default();
+            let [lo, hi] = piece.range;
             let at = |k: usize| {
                 let part = k as f64 / CHORDS as f64;
-                contour.curve3.point(lo + (hi - lo) * part)
+                contour.space_curve.point(lo + (hi - lo) * part)
             };
             for k in 0..CHORDS {
                 let (a, b) = (at(k), at(k + 1));

@@ -55,7 +55,16 @@ const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits"];
 
 /// Names that always denote integers.
 const WHOLE_NAMES: &[&str] = &[
-    "i", "j", "k", "bits", "data", "depth", "entities", "junction", "leaves", "qi",
+    "i",
+    "j",
+    "k",
+    "bits",
+    "data",
+    "depth",
+    "entities",
+    "junction",
+    "leaves",
+    "quantitative_invisibility",
 ];
 
 /// Types that their constructors identify, and that are not f64.

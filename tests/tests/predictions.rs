@@ -299,7 +299,8 @@ fn features_are_found_as_predicted() {
                 let sensor = &draft.conditions.sensor;
                 let levels = render::rows(&draft.shading, width, 0..height);
                 let image = render::finished(levels, sensor, 77);
-                let (_, found) = draft.evidence_in(&image, &PixelMask::full(width, height));
+                let domain = PixelMask::full(width, height);
+                let found = draft.evidence_in(&image, &domain).arcs;
                 let predicted = prediction(draft, &setup);
                 all.extend(matches(
                     &predicted.arcs,

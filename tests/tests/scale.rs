@@ -41,7 +41,9 @@ fn observed(part: &str, exponent: i32) -> Observed {
     let pieces = cameras.iter().flat_map(|camera| {
         let seen = contours(&known.brep, camera, known.resolution).unwrap();
         let pieces = seen.contours.into_iter().flat_map(|c| c.pieces);
-        pieces.map(|p| p.qi).collect::<Vec<_>>()
+        pieces
+            .map(|p| p.quantitative_invisibility)
+            .collect::<Vec<_>>()
     });
     (known.mass().volume / size.powi(3), pieces.collect())
 }
@@ -54,7 +56,13 @@ fn alike((volume, pieces): &Observed, (other, others): &Observed) -> bool {
 fn views_do_not_depend_on_the_unit() {
     for part in PARTS {
         let unscaled = observed(part, 0);
-        assert!(unscaled.1.iter().any(|&qi| qi > 0), "{part}");
+        assert!(
+            unscaled
+                .1
+                .iter()
+                .any(|&quantitative_invisibility| quantitative_invisibility > 0),
+            "{part}"
+        );
         for exponent in [-100, -41, -20, 20, 41, 100] {
             let scaled = observed(part, exponent);
             assert!(alike(&unscaled, &scaled), "{part} by 2^{exponent}");

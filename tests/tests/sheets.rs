@@ -189,10 +189,12 @@ fn edges_seen_end_on_are_hidden_points() {
         for view in [StandardView::Front, StandardView::Back] {
             let seen = seen(part, view);
             let is_point = |c: &ImageCurve| matches!(c, ImageCurve::Point { .. });
-            let points = seen.contours.iter().filter(|c| is_point(&c.curve2));
+            let points = seen.contours.iter().filter(|c| is_point(&c.image_curve));
             let pieces: Vec<_> = points.flat_map(|c| &c.pieces).collect();
             assert!(pieces.len() >= 3, "{part}");
-            let are_hidden = pieces.iter().all(|p| p.qi == 1 && !p.visible);
+            let are_hidden = pieces
+                .iter()
+                .all(|p| p.quantitative_invisibility == 1 && !p.visible);
             assert!(are_hidden, "{part} {view:?} {pieces:?}");
         }
     }

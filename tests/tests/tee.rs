@@ -107,7 +107,11 @@ fn examine(name: &str, json: &Value) -> Vec<f64> {
         let seen = |method| contours_with(&part.brep, &camera, part.resolution, method).unwrap();
         let (a, b) = (seen(Method::Propagated), seen(Method::Recounted));
         for (a, b) in a.contours.iter().zip(&b.contours) {
-            let differ = a.pieces.iter().zip(&b.pieces).any(|(a, b)| a.qi != b.qi);
+            let differ = a
+                .pieces
+                .iter()
+                .zip(&b.pieces)
+                .any(|(a, b)| a.quantitative_invisibility != b.quantitative_invisibility);
             if differ {
                 wrong.push(format!("{view}: contour {} is not as counted", a.id));
             }

@@ -125,7 +125,7 @@ fn rays_on_triangles_find_pieces_that_are_wrong() {
             assert!(before.agreed >= 2 * before.unclear, "{seed}: {before:?}");
             for contour in &mut seen.contours {
                 for piece in &mut contour.pieces {
-                    piece.qi += 1;
+                    piece.quantitative_invisibility += 1;
                     raised += 2;
                 }
             }

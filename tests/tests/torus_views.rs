@@ -135,14 +135,14 @@ fn real_roots(k: &[f64], [lo, hi]: [f64; 2]) -> Vec<f64> {
 fn invisibility(t: &Torus, projection: &Projection, p: &Point3<f64>) -> Option<u32> {
     let lateral = 1e-7 * (t.major + t.minor);
     let depth = 4.0 * (lateral * (t.major + t.minor)).sqrt();
-    let (v, _) = projection.towards_eye(p);
+    let v = projection.towards_eye(p).direction;
     let n = t.normal(p);
     let across = n.cross(&v);
     let count = |offset: Vector3<f64>| {
         let q = p + offset * lateral;
-        let (v, length) = projection.towards_eye(&q);
-        let within = t.inside(&q, &v, [depth, length]);
-        within.iter().filter(|i| i[1] < length).count() as u32
+        let eye = projection.towards_eye(&q);
+        let within = t.inside(&q, &eye.direction, [depth, eye.distance]);
+        within.iter().filter(|i| i[1] < eye.distance).count() as u32
     };
     let all: Vec<u32> = [n, n + across, n - across, -n, across - n, -n - across]
         .iter()
@@ -190,11 +190,18 @@ impl Tally {
         };
         let again = contours_with(&part.brep, camera, part.resolution, Method::Recounted).unwrap();
         for (a, b) in seen.contours.iter().zip(&again.contours) {
-            let qi = |c: &premio_visibility::contours::Contour| {
-                c.pieces.iter().map(|p| p.qi).collect::<Vec<_>>()
+            let quantitative_invisibility = |c: &premio_visibility::contours::Contour| {
+                c.pieces
+                    .iter()
+                    .map(|p| p.quantitative_invisibility)
+                    .collect::<Vec<_>>()
             };
-            if qi(a) != qi(b) {
-                let text = format!("{name}: carried {:?}, counted {:?}", qi(a), qi(b));
+            if quantitative_invisibility(a) != quantitative_invisibility(b) {
+                let text = format!(
+                    "{name}: carried {:?}, counted {:?}",
+                    quantitative_invisibility(a),
+                    quantitative_invisibility(b)
+                );
                 self.wrong.push(text);
             }
         }
@@ -202,12 +209,12 @@ impl Tally {
         self.wrong.extend(found);
         for p in limb_points(t, &projection.sight) {
             let on = seen.contours.iter().any(|c| {
-                let s = c.curve3.parameter(&p);
-                let near = (c.curve3.point(s) - p).norm() < 1e-7 * size;
-                let period = c.curve3.period().unwrap_or(f64::INFINITY);
+                let s = c.space_curve.parameter(&p);
+                let near = (c.space_curve.point(s) - p).norm() < 1e-7 * size;
+                let period = c.space_curve.period().unwrap_or(f64::INFINITY);
                 near && c.pieces.iter().any(|piece| {
-                    let s = piece.t[0] + (s - piece.t[0]).rem_euclid(period);
-                    s <= piece.t[1] || s - period > piece.t[0] - 1e-6
+                    let s = piece.range[0] + (s - piece.range[0]).rem_euclid(period);
+                    s <= piece.range[1] || s - period > piece.range[0] - 1e-6
                 })
             });
             if !on {
@@ -231,12 +238,12 @@ impl Tally {
             .count();
         for contour in &seen.contours {
             for piece in &contour.pieces {
-                let [lo, hi] = piece.t;
-                let at = |part: f64| contour.curve3.point(lo + (hi - lo) * part);
+                let [lo, hi] = piece.range;
+                let at = |part: f64| contour.space_curve.point(lo + (hi - lo) * part);
                 let mut bends = [false; 2];
                 for k in 0..24 {
                     let p = at((f64::from(k) + 0.5) / 24.0);
-                    let (v, _) = projection.towards_eye(&p);
+                    let v = projection.towards_eye(&p).direction;
                     if t.value(&p).abs() > 1e-9 || t.normal(&p).dot(&v).abs() > 1e-7 {
                         wrong.push(format!("{name}: {p} is on no limb"));
                     }
@@ -250,16 +257,20 @@ impl Tally {
                     }
                 }
                 if bends == [true; 2] {
-                    wrong.push(format!("{name}: a cusp within {:?}", piece.t));
+                    wrong.push(format!("{name}: a cusp within {:?}", piece.range));
                 }
                 for k in 0..SAMPLES {
                     let p = at((k as f64 + 0.5) / SAMPLES as f64);
                     match invisibility(t, projection, &p) {
                         None => self.ambiguous += 1,
-                        Some(qi) if qi == piece.qi => self.agreed += 1,
-                        Some(qi) => wrong.push(format!(
-                            "{name}: contour {} {:?}: {} for {qi} at {p}",
-                            contour.id, piece.t, piece.qi
+                        Some(quantitative_invisibility)
+                            if quantitative_invisibility == piece.quantitative_invisibility =>
+                        {
+                            self.agreed += 1
+                        }
+                        Some(quantitative_invisibility) => wrong.push(format!(
+                            "{name}: contour {} {:?}: {} for {quantitative_invisibility} at {p}",
+                            contour.id, piece.range, piece.quantitative_invisibility
                         )),
                     }
                 }
@@ -351,14 +362,14 @@ fn limbs_are_cut_next_to_their_nodes() {
         let camera = ViewCamera::orthographic(eye, Point3::origin(), Vector3::z()).unwrap();
         let seen = contours(&part.brep, &camera, part.resolution).unwrap();
         let of_tube = |c: &&premio_visibility::contours::Contour| {
-            let [p, q] = [0.0, 1.0].map(|t| c.curve3.point(t));
+            let [p, q] = [0.0, 1.0].map(|t| c.space_curve.point(t));
             c.kind == ContourKind::Limb
                 && p.y.hypot(q.y) < 1e-12
                 && p.x > 0.0
                 && (p.x - q.x).abs() > 1e-6
         };
         let arcs = seen.contours.iter().filter(of_tube);
-        let pieces: Vec<[f64; 2]> = arcs.flat_map(|c| &c.pieces).map(|p| p.t).collect();
+        let pieces: Vec<[f64; 2]> = arcs.flat_map(|c| &c.pieces).map(|p| p.range).collect();
         let length: f64 = pieces.iter().map(|t| t[1] - t[0]).sum();
         let expected = TAU / 2.0 - 2.0 * (2.0 * d).asin();
         assert!(
@@ -392,8 +403,10 @@ fn a_cusp_on_an_edge_is_no_fold() {
         // towards (0, 0, 1/2), and nothing of the ring is on the line of sight.
         let on_equator = |p: &Point3<f64>| p.x.abs() < 1e-9 && (p.y.hypot(p.z) - 0.5).abs() < 1e-9;
         let mut pieces = seen.contours.iter().flat_map(|c| {
-            let middle = |t: [f64; 2]| c.curve3.point(0.5 * (t[0] + t[1]));
-            c.pieces.iter().map(move |p| (middle(p.t), p.qi))
+            let middle = |t: [f64; 2]| c.space_curve.point(0.5 * (t[0] + t[1]));
+            c.pieces
+                .iter()
+                .map(move |p| (middle(p.range), p.quantitative_invisibility))
         });
         let upper = pieces.find(|(p, _)| on_equator(p) && p.z > p.y).unwrap();
         assert_eq!(upper.1, 0, "{method:?}: {upper:?}");

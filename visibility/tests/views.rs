@@ -55,7 +55,11 @@ fn a_block_shows_nine_of_its_twelve_edges() {
             .flat_map(|c| &c.pieces)
             .collect();
         assert!(hidden.len() >= 3);
-        assert!(hidden.iter().all(|p| p.qi == 1 && p.occluder.is_some()));
+        assert!(
+            hidden
+                .iter()
+                .all(|p| p.quantitative_invisibility == 1 && p.occluder.is_some())
+        );
     }
 }
 
@@ -65,7 +69,7 @@ fn a_block_seen_along_an_axis_shows_its_front_face() {
     let c = see(&part, &ortho([10.0, 1.0, 0.5], [0.0, 1.0, 0.5]));
     assert_eq!(wholly_visible(&c), 4);
     for contour in &c.contours {
-        let x = contour.curve3.point(0.3).x;
+        let x = contour.space_curve.point(0.3).x;
         for piece in &contour.pieces {
             assert_eq!(piece.visible, (x - 3.0).abs() < 1e-9, "{contour:?}");
         }
@@ -133,7 +137,10 @@ fn a_cylinder_in_general_and_along_and_across_its_axis() {
     assert_eq!(c.contours.len(), 4);
     for i in 0..2 {
         for p in &c.contours[i].pieces {
-            let x = c.contours[i].curve3.point(0.5 * (p.t[0] + p.t[1])).x;
+            let x = c.contours[i]
+                .space_curve
+                .point(0.5 * (p.range[0] + p.range[1]))
+                .x;
             assert_eq!(p.visible, x > 0.0, "{p:?}");
         }
     }
@@ -192,8 +199,8 @@ fn check_torus(
     for contour in &c.contours {
         for piece in &contour.pieces {
             for part in [0.15, 0.5, 0.83] {
-                let t = piece.t[0] + (piece.t[1] - piece.t[0]) * part;
-                let p = contour.curve3.point(t);
+                let t = piece.range[0] + (piece.range[1] - piece.range[0]) * part;
+                let p = contour.space_curve.point(t);
                 let (v, length) = match at {
                     Ok(e) => ((e - p).normalize(), (e - p).norm()),
                     Err(d) => (-d, 20.0),
@@ -201,7 +208,10 @@ fn check_torus(
                 evaluated += 1;
                 if let Some(truth) = torus_oracle(&torus, p, v, length) {
                     decided += 1;
-                    assert_eq!(piece.qi, truth, "{camera:?} {part} {piece:?}");
+                    assert_eq!(
+                        piece.quantitative_invisibility, truth,
+                        "{camera:?} {part} {piece:?}"
+                    );
                 }
             }
         }
@@ -262,19 +272,19 @@ fn constant(brep: &Brep, camera: &ViewCamera, c: &Contours) {
     let scene = Scene::new(brep, &projection, BAND);
     for contour in &c.contours {
         for piece in &contour.pieces {
-            let [lo, hi] = piece.t;
+            let [lo, hi] = piece.range;
             for part in [0.04, 0.27, 0.5, 0.71, 0.96] {
-                let p = contour.curve3.point(lo + (hi - lo) * part);
+                let p = contour.space_curve.point(lo + (hi - lo) * part);
                 let own = |f| match contour.faces.contains(&f) {
                     false => OriginIncidence::No,
                     true if contour.kind == ContourKind::Limb => OriginIncidence::Tangent,
                     true => OriginIncidence::Through,
                 };
-                let along = contour.curve3.tangent(lo + (hi - lo) * part);
+                let along = contour.space_curve.tangent(lo + (hi - lo) * part);
                 let count = scene.count(&p, &along, &own);
                 if count.unambiguous {
                     assert_eq!(
-                        count.qi, piece.qi,
+                        count.quantitative_invisibility, piece.quantitative_invisibility,
                         "{camera:?} contour {} {piece:?} at {part}",
                         contour.id
                     );
@@ -309,8 +319,8 @@ fn compare(brep: &Brep, camera: &ViewCamera) {
         assert_eq!(a.pieces.len(), b.pieces.len());
         for (p, q) in a.pieces.iter().zip(&b.pieces) {
             assert_eq!(
-                (p.qi, p.visible, p.occluder),
-                (q.qi, q.visible, q.occluder),
+                (p.quantitative_invisibility, p.visible, p.occluder),
+                (q.quantitative_invisibility, q.visible, q.occluder),
                 "{camera:?} contour {} {p:?} {q:?} {:?}",
                 a.id,
                 p.start.map(|j| &carried.junctions[j as usize])
@@ -387,7 +397,7 @@ fn up_along_the_line_of_sight_is_replaced() {
     assert!(
         c.junctions
             .iter()
-            .all(|j| j.point2.iter().all(|x| x.is_finite()))
+            .all(|j| j.image_point.iter().all(|x| x.is_finite()))
     );
     let bad = ViewCamera::perspective(Point3::origin(), Point3::origin(), Vector3::z(), 1.0);
     assert_eq!(bad, Err(CameraError::Value("target", "is the eye")));
@@ -408,7 +418,7 @@ fn what_lies_behind_the_eye_is_cut_at_the_near_plane() {
     assert!(cuts >= 4);
     for contour in &c.contours {
         for p in &contour.pieces {
-            let m = contour.curve3.point(0.5 * (p.t[0] + p.t[1]));
+            let m = contour.space_curve.point(0.5 * (p.range[0] + p.range[1]));
             assert!((m - Point3::new(10.0, 3.0, 0.5)).dot(&Vector3::new(10.0, -1.0, 0.0)) > 0.0);
         }
     }

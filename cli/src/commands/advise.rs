@@ -9,7 +9,7 @@ use crate::{input, output};
 use nalgebra::Vector3;
 use premio_predict::image_arcs::ArcSource;
 use premio_predict::prediction::Memory;
-use premio_predict::sensor_planning::{Goal, Placing, SCHEMA, Score, SetupScorer};
+use premio_predict::sensor_planning::{Goal, Placing, SCHEMA, Score, ScoredPlacing, SetupScorer};
 use premio_predict::setup::Setup;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -90,7 +90,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
         unseen: tried - seen,
         best: all
             .iter()
-            .map(|one| advised(&predicates, one, &all[0].1))
+            .map(|one| advised(&predicates, one, &all[0].score))
             .collect(),
     };
     let to = options.output.path();
@@ -108,27 +108,30 @@ fn scores(
     predicates: &SetupScorer<'_>,
     keep: usize,
     voice: Reporter,
-) -> (Vec<(Placing, Score)>, usize) {
+) -> (Vec<ScoredPlacing>, usize) {
     let count = predicates.setups.len();
     let bar = voice.progress(count as u64);
     let (mut best, mut seen) = (Vec::new(), 0);
     for from in (0..count).step_by(BATCH) {
         let each = (from..(from + BATCH).min(count)).into_par_iter();
-        let scored: Vec<Option<(Placing, Score)>> = each
+        let scored: Vec<Option<ScoredPlacing>> = each
             .map_init(Memory::default, |memory, i| {
                 let [view, light] = predicates.setups.directions(i);
                 let view = view.unwrap_or_else(Vector3::x);
                 let placing = Placing { view, light };
                 let score = predicates.score(&placing, memory);
                 bar.inc(1);
-                score.ok().map(|score| (placing, score))
+                score.ok().map(|score| ScoredPlacing { placing, score })
             })
             .collect();
         let before = best.len();
         best.extend(scored.into_iter().flatten());
         seen += best.len() - before;
         // The sort is stable: of equals the first setup is the better one.
-        best.sort_by(|a, b| predicates.value(&b.1).total_cmp(&predicates.value(&a.1)));
+        best.sort_by(|a, b| {
+            let value = |one: &ScoredPlacing| predicates.value(&one.score);
+            value(b).total_cmp(&value(a))
+        });
         best.truncate(keep);
     }
     bar.finish_and_clear();
@@ -137,7 +140,7 @@ fn scores(
 
 fn advised(
     predicates: &SetupScorer<'_>,
-    (placing, score): &(Placing, Score),
+    ScoredPlacing { placing, score }: &ScoredPlacing,
     best: &Score,
 ) -> Advised {
     let Setup { camera, lights, .. } =

@@ -6,7 +6,7 @@ use crate::input::EvaluatedPart;
 use crate::session::Session;
 use crate::{input, output};
 use premio::{Camera, Drawing, DrawingOptions, Paper, Sheet, StandardView, Unit, View};
-use premio_drawing::sheet::{self, Angle};
+use premio_drawing::sheet::{self, Angle, SheetView};
 use premio_drawing::{dxf, svg};
 use premio_visibility::camera::CameraError;
 use premio_visibility::contours::ViewError;
@@ -116,10 +116,10 @@ fn on_sheet(
     let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
     for (view, camera) in cameras {
-        views.push((
+        views.push(SheetView {
             view,
-            drawing(&seen(&part, &camera, given.as_ref())?, options),
-        ));
+            drawing: drawing(&seen(&part, &camera, given.as_ref())?, options),
+        });
         bar.inc(1);
     }
     bar.finish_and_clear();

@@ -62,7 +62,7 @@ pub(super) fn near_edges(
 ) -> Option<NearEdges> {
     seamed.faces.iter().find_map(|face| {
         let halves = face.loops.iter().flatten();
-        let edges = halves.map(|half| &seamed.edges[half.0]);
+        let edges = halves.map(|half| &seamed.edges[half.edge]);
         let edges = edges.filter(|edge| edge.source.is_some());
         let mut boxed: Vec<Boxed<'_>> = edges.map(|edge| Boxed::new(edge, least)).collect();
         boxed.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));

@@ -38,8 +38,8 @@ impl<'s, 'e> Shape<'s, 'e> {
     pub fn new(exchange: &'e mut Exchange, seamed: &'s TwoManifold<'s>, accuracy: f64) -> Self {
         let mut sides = vec![Vec::new(); seamed.edges.len()];
         for (f, face) in seamed.faces.iter().enumerate() {
-            for (edge, _) in face.loops.iter().flatten() {
-                sides[*edge].push(f);
+            for half in face.loops.iter().flatten() {
+                sides[half.edge].push(f);
             }
         }
         Self {
@@ -94,9 +94,9 @@ impl<'s, 'e> Shape<'s, 'e> {
         let mut bounds = Vec::with_capacity(face.loops.len());
         for (k, ring) in face.loops.iter().enumerate() {
             let mut oriented = Vec::with_capacity(ring.len());
-            for (edge, sense) in ring {
-                let id = self.edge(*edge)?;
-                let along = Truth(*sense == Sense::Along);
+            for half in ring {
+                let id = self.edge(half.edge)?;
+                let along = Truth(half.sense == Sense::Along);
                 oriented.push(
                     self.exchange
                         .add(format_args!("ORIENTED_EDGE('',*,*,{id},{along})")),
@@ -199,7 +199,7 @@ impl<'s, 'e> Shape<'s, 'e> {
     /// The height of the highest vertex of a face above its cone's apex.
     fn top(&self, face: &SeamedFace) -> f64 {
         let edges = face.loops.iter().flatten();
-        let vertices = edges.flat_map(|(edge, _)| self.seamed.edges[*edge].ends);
+        let vertices = edges.flat_map(|half| self.seamed.edges[half.edge].ends);
         let frame = face.window.surface.frame();
         let heights = vertices.map(|v| frame.coordinates(&self.seamed.points[v]).z);
         heights.fold(0.0, f64::max)

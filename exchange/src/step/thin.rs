@@ -63,7 +63,7 @@ pub(super) fn check(
     let lengths: Vec<f64> = seamed.edges.iter().map(length).collect();
     let start = |edge: usize| seamed.points[seamed.edges[edge].ends[0]];
     for face in &seamed.faces {
-        let edges = || face.loops.iter().flatten().map(|half| half.0);
+        let edges = || face.loops.iter().flatten().map(|half| half.edge);
         if let Some(edge) = edges().find(|&edge| lengths[edge] <= least) {
             return Err(thin(Thin::Edge, start(edge), lengths[edge], least));
         }

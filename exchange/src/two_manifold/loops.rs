@@ -6,7 +6,7 @@
 use super::gaps::SAME;
 use super::pairs::Pairs;
 use super::seams::{Cut, End, Seam};
-use super::{SeamError, SeamedEdge, SeamedFace, TwoManifold};
+use super::{HalfEdge, SeamError, SeamedEdge, SeamedFace, TwoManifold};
 use crate::parameters::ParameterWindow;
 use nalgebra::Point2;
 use premio_kernel::brep::Brep;
@@ -16,14 +16,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// One side of an edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Half {
-    edge: usize,
-    sense: Sense,
-}
-
-impl Half {
+impl HalfEdge {
     fn along(edge: usize) -> Self {
         let sense = Sense::Along;
         Self { edge, sense }
@@ -139,10 +132,10 @@ impl<'a> Linking<'a, '_> {
     }
 
     /// The halves of a coedge, in its direction.
-    fn halves(&self, coedge: CoedgeId) -> Vec<Half> {
+    fn halves(&self, coedge: CoedgeId) -> Vec<HalfEdge> {
         let sense = self.brep.topology.coedge(coedge).sense;
         let parts = self.parts[self.pairs.edge_of[&coedge]].clone();
-        let halves = parts.map(|edge| Half { edge, sense });
+        let halves = parts.map(|edge| HalfEdge { edge, sense });
         match sense {
             Sense::Along => halves.collect(),
             Sense::Against => halves.rev().collect(),
@@ -150,7 +143,7 @@ impl<'a> Linking<'a, '_> {
     }
 
     /// The halves of a coedge that end and start where a seam meets it, and the vertex there.
-    fn around(&self, coedge: CoedgeId, t: f64) -> ([Half; 2], usize) {
+    fn around(&self, coedge: CoedgeId, t: f64) -> ([HalfEdge; 2], usize) {
         let pair = self.pairs.edge_of[&coedge];
         let [lo, hi] = self.brep.range(self.brep.topology.coedge(coedge).edge);
         let is_open = self.pairs.ends[pair].is_some();
@@ -175,22 +168,22 @@ impl<'a> Linking<'a, '_> {
             Sense::Along => [before, after],
             Sense::Against => [after, before],
         };
-        (halves.map(|edge| Half { edge, sense }), vertex)
+        (halves.map(|edge| HalfEdge { edge, sense }), vertex)
     }
 
     /// Adds a face, or its pieces if its seams divide it.
     fn add_face(&mut self, face: FaceId, cut: &Cut) -> Result<(), SeamError> {
-        let mut next: HashMap<Half, Half> = HashMap::new();
-        let mut order: Vec<Half> = Vec::new();
+        let mut next: HashMap<HalfEdge, HalfEdge> = HashMap::new();
+        let mut order: Vec<HalfEdge> = Vec::new();
         for ring in &self.pairs.rings[face.index()] {
-            let halves: Vec<Half> = ring.iter().flat_map(|&c| self.halves(c)).collect();
+            let halves: Vec<HalfEdge> = ring.iter().flat_map(|&c| self.halves(c)).collect();
             let after = halves.iter().cycle().skip(1);
             next.extend(halves.iter().copied().zip(after.copied()));
             order.extend(halves);
         }
         self.add_seams(face, cut, &mut next, &mut order);
         let mut seen = std::collections::HashSet::new();
-        let mut loops: Vec<Vec<Half>> = Vec::new();
+        let mut loops: Vec<Vec<HalfEdge>> = Vec::new();
         for start in order {
             let mut ring = Vec::new();
             let mut at = start;
@@ -209,15 +202,11 @@ impl<'a> Linking<'a, '_> {
             false => nested(outlines).ok_or(SeamError::Loops { face })?,
         };
         for loops in pieces {
-            let edges = |outline: Outline| {
-                let halves = outline.halves.into_iter();
-                halves.map(|h| (h.edge, h.sense)).collect()
-            };
             self.seamed.faces.push(SeamedFace {
                 source: face,
                 window: cut.window,
                 sense: self.brep.sense(face),
-                loops: loops.into_iter().map(edges).collect(),
+                loops: loops.into_iter().map(|outline| outline.halves).collect(),
             });
         }
         Ok(())
@@ -228,8 +217,8 @@ impl<'a> Linking<'a, '_> {
         &mut self,
         face: FaceId,
         cut: &Cut,
-        next: &mut HashMap<Half, Half>,
-        order: &mut Vec<Half>,
+        next: &mut HashMap<HalfEdge, HalfEdge>,
+        order: &mut Vec<HalfEdge>,
     ) {
         let mut crossing: Option<usize> = None;
         // At a crossing: the edges from below and from the left, and those upwards and to the
@@ -237,7 +226,7 @@ impl<'a> Linking<'a, '_> {
         let mut star: [Option<usize>; 4] = [None; 4];
         for seam in &cut.seams {
             let edge = self.seamed.edges.len();
-            let (there, back) = (Half::along(edge), Half::against(edge));
+            let (there, back) = (HalfEdge::along(edge), HalfEdge::against(edge));
             order.extend([there, back]);
             let mut ends = [0; 2];
             for (k, end) in seam.ends.iter().enumerate() {
@@ -270,16 +259,16 @@ impl<'a> Linking<'a, '_> {
             // As seen from outside: left if it is also to the left of the surface's normal.
             let turns = match self.brep.sense(face) {
                 Sense::Along => [
-                    (Half::along(below), Half::against(left)),
-                    (Half::along(left), Half::along(above)),
-                    (Half::against(above), Half::along(right)),
-                    (Half::against(right), Half::against(below)),
+                    (HalfEdge::along(below), HalfEdge::against(left)),
+                    (HalfEdge::along(left), HalfEdge::along(above)),
+                    (HalfEdge::against(above), HalfEdge::along(right)),
+                    (HalfEdge::against(right), HalfEdge::against(below)),
                 ],
                 Sense::Against => [
-                    (Half::along(below), Half::along(right)),
-                    (Half::along(left), Half::against(below)),
-                    (Half::against(above), Half::against(left)),
-                    (Half::against(right), Half::along(above)),
+                    (HalfEdge::along(below), HalfEdge::along(right)),
+                    (HalfEdge::along(left), HalfEdge::against(below)),
+                    (HalfEdge::against(above), HalfEdge::against(left)),
+                    (HalfEdge::against(right), HalfEdge::along(above)),
                 ],
             };
             next.extend(turns);
@@ -331,7 +320,7 @@ impl TwoManifold<'_> {
 
 /// A loop in the parameters of its surface.
 struct Outline {
-    halves: Vec<Half>,
+    halves: Vec<HalfEdge>,
     points: Vec<Point2<f64>>,
     /// Its signed area, positive if the face lies inside.
     area: f64,
@@ -345,7 +334,7 @@ impl Outline {
         seamed: &TwoManifold<'_>,
         side: Sense,
         window: &ParameterWindow,
-        halves: Vec<Half>,
+        halves: Vec<HalfEdge>,
     ) -> Self {
         let mut points = Vec::new();
         for half in &halves {

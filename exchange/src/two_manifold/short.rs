@@ -1,9 +1,8 @@
 //! Merges the ends of edges that are too short for other kernels, and removes faces so narrow that
 //! their two edges become one.
 
-use super::TwoManifold;
+use super::{HalfEdge, TwoManifold};
 use nalgebra::Point3;
-use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::curve::Curve;
 
 /// The number of steps from which an edge's length is computed.
@@ -22,7 +21,8 @@ impl TwoManifold<'_> {
         for edge in short {
             let [a, b] = self.edges[edge].ends;
             let [p, q] = [a, b].map(|v| self.points[v]);
-            let is_alone = |ring: &[(usize, _)]| ring.iter().any(|h| h.0 == edge) && ring.len() < 3;
+            let is_alone =
+                |ring: &[HalfEdge]| ring.iter().any(|h| h.edge == edge) && ring.len() < 3;
             let mut rings = self.faces.iter().flat_map(|face| &face.loops);
             if a == b || (p - q).norm() > least || rings.any(|ring| is_alone(ring)) {
                 continue;
@@ -34,14 +34,11 @@ impl TwoManifold<'_> {
                 }
             }
             for ring in self.faces.iter_mut().flat_map(|face| &mut face.loops) {
-                ring.retain(|half| half.0 != edge);
+                ring.retain(|half| half.edge != edge);
             }
         }
     }
 }
-
-/// A half of an edge in a loop.
-type Half = (usize, Sense);
 
 impl TwoManifold<'_> {
     /// Removes the faces between two edges with a distance of at most `least`, which become one
@@ -52,7 +49,10 @@ impl TwoManifold<'_> {
             let Some([kept, given_up]) = self.narrow(face, least) else {
                 continue;
             };
-            let there = (given_up.0, given_up.1.reversed());
+            let there = HalfEdge {
+                edge: given_up.edge,
+                sense: given_up.sense.reversed(),
+            };
             let others = self.faces.iter_mut().enumerate();
             let others = others.filter(|(other, _)| *other != face && !closed[*other]);
             let halves = others.flat_map(|(_, f)| f.loops.iter_mut().flatten());
@@ -65,14 +65,14 @@ impl TwoManifold<'_> {
     }
 
     /// The two halves around a narrow face.
-    fn narrow(&self, face: usize, least: f64) -> Option<[Half; 2]> {
+    fn narrow(&self, face: usize, least: f64) -> Option<[HalfEdge; 2]> {
         let [ring] = &self.faces[face].loops[..] else {
             return None;
         };
         let &[kept, given_up] = &ring[..] else {
             return None;
         };
-        let [a, b] = [kept, given_up].map(|half| &self.edges[half.0]);
+        let [a, b] = [kept, given_up].map(|half| &self.edges[half.edge]);
         let [lo, hi] = b.range;
         let is_near = |k: u32| {
             let p = b
@@ -81,7 +81,7 @@ impl TwoManifold<'_> {
             let on = a.curve.in_cycle(a.curve.parameter(&p), a.range[0]);
             (a.curve.point(on.min(a.range[1])) - p).norm() <= least
         };
-        let is_one = kept.0 != given_up.0 && (0..=STEPS).all(is_near);
+        let is_one = kept.edge != given_up.edge && (0..=STEPS).all(is_near);
         is_one.then_some([kept, given_up])
     }
 

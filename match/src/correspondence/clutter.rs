@@ -33,7 +33,7 @@ impl Clutter {
     pub fn about(picture: &ImageFeatures, arcs: &[PredictedContour]) -> Self {
         let size = picture.size.map(|n| n as f64);
         let (mut low, mut high): ([f64; 2], [f64; 2]) = (size, [0.0; 2]);
-        for (_, seen) in arcs.iter().flat_map(|a| &a.points) {
+        for seen in arcs.iter().flat_map(|a| &a.points).map(|p| &p.image) {
             if picture.edges.reaches(&seen.at) {
                 for i in 0..2 {
                     low[i] = low[i].min(seen.at[i]);

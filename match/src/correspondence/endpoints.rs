@@ -160,18 +160,18 @@ fn tips(
 /// neither end is near the vertex.
 fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, Vector2<f64>)> {
     let last = arc.points.len().checked_sub(1)?;
-    let distance = |k: usize| (arc.points[k].0 - vertex).norm();
+    let distance = |k: usize| (arc.points[k].point - vertex).norm();
     let (end, next) = if distance(0) < distance(last) {
         (0, 1.min(last))
     } else {
         (last, last.saturating_sub(1))
     };
-    let step = (arc.points[end].0 - arc.points[next].0).norm();
+    let step = (arc.points[end].point - arc.points[next].point).norm();
     // The distance from the last sample to the vertex is half a step.
     if distance(end) > 2.0 * step || end == next {
         return None;
     }
-    let (at, before) = (arc.points[end].1.at, arc.points[next].1.at);
+    let (at, before) = (arc.points[end].image.at, arc.points[next].image.at);
     Some((at, (at - before).try_normalize(0.0)?))
 }
 
@@ -206,7 +206,7 @@ fn farthest(
 /// Whether one of the arcs passes a point approximately along a direction.
 fn runs_along(arcs: &[PredictedContour], at: &Point2<f64>, direction: &Vector2<f64>) -> bool {
     let points = arcs.iter().flat_map(|a| &a.points);
-    let mut seen = points.map(|p| &p.1);
+    let mut seen = points.map(|p| &p.image);
     seen.any(|s| (s.at - at).norm() < PASSES && s.normal.dot(direction).abs() < ACROSS)
 }
 

@@ -47,6 +47,17 @@ pub const SHORTEST: f64 = 10.0;
 /// The covered share from which an edge is whole; below, it is broken.
 pub const WHOLE: f64 = 0.85;
 
+/// An edge pixel at a point of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChoiceHit {
+    /// The index of the arc's point.
+    pub point: usize,
+    /// The position of the edge pixel.
+    pub at: Point2<f64>,
+    /// The piece that contains it.
+    pub piece: u32,
+}
+
 /// A candidate for an arc, with its edge pixels.
 #[derive(Clone, Debug)]
 pub struct FeatureChoice {
@@ -56,8 +67,8 @@ pub struct FeatureChoice {
     pub share: f64,
     /// The mean signed distance from the arc along its normals, in pixels.
     pub offset: f64,
-    /// By point of the arc: the edge pixel, and the piece that contains it.
-    pub hits: Vec<(usize, Point2<f64>, u32)>,
+    /// The edge pixels at points of the arc.
+    pub hits: Vec<ChoiceHit>,
     /// The length of its longest segment in pixels.
     pub longest: f64,
     /// The log-likelihood of this coverage for an arc that is found.
@@ -88,8 +99,11 @@ impl Correspondence {
         arcs: &[PredictedContour],
     ) -> Self {
         let inside = |arc: &PredictedContour| {
-            let visible = arc.points.iter().filter(|p| picture.edges.reaches(&p.1.at));
-            visible.map(|p| p.1.length).sum::<f64>()
+            let visible = arc
+                .points
+                .iter()
+                .filter(|p| picture.edges.reaches(&p.image.at));
+            visible.map(|p| p.image.length).sum::<f64>()
         };
         let lengths: Vec<f64> = arcs.iter().map(inside).collect();
         let clutter = Clutter::about(picture, arcs);
@@ -198,16 +212,20 @@ fn attributes(
 impl FeatureChoice {
     /// The edge points to which the arc is fitted.
     fn pulls(&self, arc: &PredictedContour) -> Vec<PointToLine> {
-        let covered: f64 = self.hits.iter().map(|h| arc.points[h.0].1.length).sum();
+        let covered: f64 = self
+            .hits
+            .iter()
+            .map(|h| arc.points[h.point].image.length)
+            .sum();
         // Neighbouring edge pixels have correlated errors. A line counts as two observations, for
         // its ends, and more if it is long.
         let weight = (2.0 + covered / LONG) / self.hits.len() as f64;
-        let hits = self.hits.iter().map(|&(k, target, _)| {
-            let (point, seen) = arc.points[k];
+        let hits = self.hits.iter().map(|hit| {
+            let sample = arc.points[hit.point];
             PointToLine {
-                point,
-                target,
-                normal: seen.normal,
+                point: sample.point,
+                target: hit.at,
+                normal: sample.image.normal,
                 weight,
             }
         });
@@ -218,7 +236,7 @@ impl FeatureChoice {
     fn pieces(&self) -> Vec<u32> {
         let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
         for hit in &self.hits {
-            *counts.entry(hit.2).or_default() += 1;
+            *counts.entry(hit.piece).or_default() += 1;
         }
         let most = counts.values().copied().max().unwrap_or_default();
         let taken = |count: usize| count as f64 * APART > 0.6 * PIECE as f64 || count == most;
@@ -253,14 +271,14 @@ const ATTRIBUTE: f64 = 6.0;
 fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     let mut along = 0.0;
     let mut places = Vec::with_capacity(arc.points.len());
-    for (_, seen) in &arc.points {
+    for seen in arc.points.iter().map(|p| &p.image) {
         places.push(along + 0.5 * seen.length);
         along += seen.length;
     }
     let n = choice.hits.len() as f64;
-    let pairs = choice.hits.iter().map(|&(k, at, _)| {
-        let seen = &arc.points[k].1;
-        (places[k], seen.normal.dot(&(at - seen.at)))
+    let pairs = choice.hits.iter().map(|hit| {
+        let seen = &arc.points[hit.point].image;
+        (places[hit.point], seen.normal.dot(&(hit.at - seen.at)))
     });
     let pairs: Vec<(f64, f64)> = pairs.collect();
     let [s, o] = [
@@ -275,14 +293,18 @@ fn tilt(choice: &FeatureChoice, arc: &PredictedContour) -> f64 {
     if own > 0.0 { (both / own).atan() } else { 0.0 }
 }
 
-/// The index of a point of an arc, the edge pixel there, its signed distance, and its piece.
-type Run = (usize, Point2<f64>, f64, u32);
+/// An edge pixel at a point of an arc.
+struct Run {
+    hit: ChoiceHit,
+    /// Its signed distance from the arc.
+    offset: f64,
+}
 
 /// The candidates of an arc: single segments, and segments that lie end to end.
 fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice> {
     let mut by_segment: BTreeMap<u32, Vec<Run>> = BTreeMap::new();
     let mut inside = 0;
-    for (k, (_, seen)) in arc.points.iter().enumerate() {
+    for (point, seen) in arc.points.iter().map(|p| &p.image).enumerate() {
         if !picture.edges.reaches(&seen.at) {
             continue;
         }
@@ -294,8 +316,12 @@ fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice
             let at = seen.at + seen.normal * hit.offset;
             let all = by_segment.entry(hit.segment).or_default();
             // One pixel for each point.
-            if all.last().is_none_or(|last| last.0 != k) {
-                all.push((k, at, hit.offset, hit.piece));
+            if all.last().is_none_or(|last| last.hit.point != point) {
+                let piece = hit.piece;
+                all.push(Run {
+                    hit: ChoiceHit { point, at, piece },
+                    offset: hit.offset,
+                });
             }
         }
     }
@@ -303,9 +329,12 @@ fn choices(arc: &PredictedContour, picture: &ImageFeatures) -> Vec<FeatureChoice
     let single = |(&segment, hits): (&u32, &Vec<Run>)| FeatureChoice {
         segments: vec![segment],
         share: hits.len() as f64 / f64::from(inside),
-        offset: hits.iter().map(|h| h.2).sum::<f64>() / hits.len() as f64,
-        hits: hits.iter().map(|h| (h.0, h.1, h.3)).collect(),
-        longest: hits.iter().map(|h| arc.points[h.0].1.length).sum(),
+        offset: hits.iter().map(|h| h.offset).sum::<f64>() / hits.len() as f64,
+        hits: hits.iter().map(|h| h.hit).collect(),
+        longest: hits
+            .iter()
+            .map(|h| arc.points[h.hit.point].image.length)
+            .sum(),
         likely: 0.0,
         ends: [0; 2],
     };
@@ -350,8 +379,8 @@ fn joined(arc: &PredictedContour, seed: &FeatureChoice, pieces: &[FeatureChoice]
             .then_with(|| a.segments.cmp(&b.segments))
     });
     for piece in order {
-        let known = |k: usize| whole.hits.iter().any(|h| h.0 == k);
-        let shared = piece.hits.iter().filter(|h| known(h.0)).count();
+        let known = |k: usize| whole.hits.iter().any(|h| h.point == k);
+        let shared = piece.hits.iter().filter(|h| known(h.point)).count();
         let near = (piece.offset - whole.offset).abs() < PIECES;
         let other = !whole.segments.contains(&piece.segments[0]);
         if other
@@ -359,7 +388,12 @@ fn joined(arc: &PredictedContour, seed: &FeatureChoice, pieces: &[FeatureChoice]
             && is_along(piece, arc)
             && (shared as f64) < OVERLAP * piece.hits.len() as f64
         {
-            let new: Vec<_> = piece.hits.iter().filter(|h| !known(h.0)).copied().collect();
+            let new: Vec<_> = piece
+                .hits
+                .iter()
+                .filter(|h| !known(h.point))
+                .copied()
+                .collect();
             let (n, m) = (whole.hits.len() as f64, new.len() as f64);
             whole.offset = (whole.offset * n + piece.offset * m) / (n + m);
             whole.share *= (n + m) / n;
@@ -367,7 +401,7 @@ fn joined(arc: &PredictedContour, seed: &FeatureChoice, pieces: &[FeatureChoice]
             whole.segments.extend(&piece.segments);
         }
     }
-    whole.hits.sort_by_key(|h| h.0);
+    whole.hits.sort_by_key(|h| h.point);
     whole.segments.sort_unstable();
     whole
 }

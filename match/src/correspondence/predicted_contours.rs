@@ -15,6 +15,15 @@ const MOST: usize = 400;
 /// How many points estimate the length of a piece.
 const FEW: usize = 12;
 
+/// A point of a visible contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContourSample {
+    /// The point in space.
+    pub point: Point3<f64>,
+    /// The point in the image.
+    pub image: SampleHit,
+}
+
 /// A visible contour of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PredictedContour {
@@ -24,8 +33,8 @@ pub struct PredictedContour {
     pub stroke: Option<usize>,
     /// Whether only one of its faces is turned to the eye.
     pub outline: bool,
-    /// Points along it: in space, and in the image.
-    pub points: Vec<(Point3<f64>, SampleHit)>,
+    /// Points along it.
+    pub points: Vec<ContourSample>,
     /// Its visible length in pixels.
     pub length: f64,
 }
@@ -75,7 +84,7 @@ pub fn arcs(
             source,
             stroke,
             outline,
-            length: points.iter().map(|p| p.1.length).sum(),
+            length: points.iter().map(|p| p.image.length).sum(),
             points,
         });
     }
@@ -83,17 +92,13 @@ pub fn arcs(
 }
 
 /// Points of the visible pieces of a contour.
-fn points(
-    contour: &Contour,
-    camera: &Pinhole,
-    pose: &Isometry3<f64>,
-) -> Vec<(Point3<f64>, SampleHit)> {
+fn points(contour: &Contour, camera: &Pinhole, pose: &Isometry3<f64>) -> Vec<ContourSample> {
     let mut all = Vec::new();
     for piece in contour.pieces.iter().filter(|p| p.visible) {
-        let [from, to] = piece.t;
+        let [from, to] = piece.range;
         let mark = |k: usize, n: usize| {
             let parameter = from + (to - from) * (k as f64 + 0.5) / n as f64;
-            let curve = &contour.curve3;
+            let curve = &contour.space_curve;
             EdgeSample {
                 point: curve.point(parameter),
                 tangent: curve.tangent(parameter),
@@ -108,7 +113,11 @@ fn points(
         let count = ((length / APART).ceil() as usize).clamp(1, MOST);
         all.extend((0..count).filter_map(|k| {
             let mark = mark(k, count);
-            seen(camera, pose, &mark).map(|seen| (mark.point, seen))
+            let image = seen(camera, pose, &mark)?;
+            Some(ContourSample {
+                point: mark.point,
+                image,
+            })
         }));
     }
     all

@@ -2,7 +2,7 @@
 
 use crate::camera::Pinhole;
 use crate::hypothesis::edge_score::eye;
-use crate::hypothesis::{Hypothesis, Proposed, plausible};
+use crate::hypothesis::{Proposed, TriedPoses, plausible};
 use crate::image::ImageFeatures;
 use crate::part::{SampledEdge, SoughtPart};
 use crate::pose::circle::{circles, edge_poses};
@@ -30,14 +30,14 @@ pub fn of_ellipses(part: &SoughtPart<'_>, picture: &ImageFeatures, camera: &Pinh
     let most = (POSES / each).clamp(FEWEST, MOST);
     let cut = conics.len() > most && !part.circles.is_empty();
     conics.truncate(most);
-    let found: Vec<(Vec<Hypothesis>, usize)> = conics
+    let found: Vec<TriedPoses> = conics
         .par_iter()
         .enumerate()
-        .map(|(number, conic)| of_ellipse(part, picture, camera, (number, conic), turns))
+        .map(|(number, conic)| of_ellipse(part, picture, camera, number, conic, turns))
         .collect();
     Proposed {
-        count: found.iter().map(|f| f.1).sum(),
-        hypotheses: found.into_iter().flat_map(|f| f.0).collect(),
+        count: found.iter().map(|f| f.count).sum(),
+        hypotheses: found.into_iter().flat_map(|f| f.hypotheses).collect(),
         cut,
     }
 }
@@ -62,9 +62,10 @@ fn of_ellipse(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
-    (number, conic): (usize, &[f64; 6]),
+    number: usize,
+    conic: &[f64; 6],
     turns: usize,
-) -> (Vec<Hypothesis>, usize) {
+) -> TriedPoses {
     let (mut all, mut count) = (Vec::new(), 0);
     for &of in &part.circles {
         let stroke = &part.strokes[of];
@@ -77,12 +78,15 @@ fn of_ellipse(
                 if !faces(part, stroke, &eye(&pose)) {
                     continue;
                 }
-                let names = [usize::MAX - number, of];
-                all.extend(plausible(part, picture, camera, pose, names));
+                let chain = usize::MAX - number;
+                all.extend(plausible(part, picture, camera, pose, chain, of));
             }
         }
     }
-    (all, count)
+    TriedPoses {
+        hypotheses: all,
+        count,
+    }
 }
 
 /// Whether any sample of an edge faces an eye.

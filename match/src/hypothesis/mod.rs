@@ -46,6 +46,15 @@ pub struct Proposed {
     pub cut: bool,
 }
 
+/// The hypotheses that one feature of an image proposes.
+#[derive(Debug, Default)]
+struct TriedPoses {
+    /// The plausible ones.
+    hypotheses: Vec<Hypothesis>,
+    /// How many poses were tested.
+    count: usize,
+}
+
 /// The poses that chains and ellipses of an image propose, the most likely first.
 pub fn hypotheses(
     part: &SoughtPart<'_>,
@@ -55,13 +64,13 @@ pub fn hypotheses(
 ) -> Proposed {
     let numbered = [0, 1].map(|kind| chains[kind].iter().map(move |c| (kind, c)));
     let numbered: Vec<_> = numbered.into_iter().flatten().enumerate().collect();
-    let found: Vec<(Vec<Hypothesis>, usize)> = numbered
+    let found: Vec<TriedPoses> = numbered
         .par_iter()
-        .map(|&(i, (kind, chain))| of_chain(part, picture, camera, (i, kind), chain))
+        .map(|&(i, (kind, chain))| of_chain(part, picture, camera, i, kind, chain))
         .collect();
     let round = of_ellipses(part, picture, camera);
-    let count = round.count + found.iter().map(|f| f.1).sum::<usize>();
-    let mut all: Vec<Hypothesis> = found.into_iter().flat_map(|f| f.0).collect();
+    let count = round.count + found.iter().map(|f| f.count).sum::<usize>();
+    let mut all: Vec<Hypothesis> = found.into_iter().flat_map(|f| f.hypotheses).collect();
     all.extend(round.hypotheses);
     best_first(&mut all);
     let likely = all.partition_point(|h| h.ratio > 0.0);
@@ -145,14 +154,15 @@ fn of_chain(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
-    (number, kind): (usize, usize),
+    number: usize,
+    kind: usize,
     chain: &image::LinePath,
-) -> (Vec<Hypothesis>, usize) {
+) -> TriedPoses {
     let points = chain.corners.map(|c| c.at);
     let beyond = [0, 1].map(|i| points[i] + chain.corners[i].away * chain.corners[i].length);
     let [rays, beyond] = [points, beyond].map(|p| p.map(|p| camera.ray(&p)));
     let Some(image) = ImageChain::new(rays, beyond) else {
-        return (Vec::new(), 0);
+        return TriedPoses::default();
     };
     let mut all = Vec::new();
     let mut count = 0;
@@ -162,10 +172,13 @@ fn of_chain(
             if !fits(part, model, camera, &pose, chain) {
                 continue;
             }
-            all.extend(plausible(part, picture, camera, pose, [number, of]));
+            all.extend(plausible(part, picture, camera, pose, number, of));
         }
     }
-    (all, count)
+    TriedPoses {
+        hypotheses: all,
+        count,
+    }
 }
 
 /// A pose that a chain of the image and one of the part propose, if its coarse score is plausible.
@@ -174,7 +187,8 @@ pub fn plausible(
     picture: &ImageFeatures,
     camera: &Pinhole,
     pose: Isometry3<f64>,
-    [chain, of]: [usize; 2],
+    chain: usize,
+    of: usize,
 ) -> Option<Hypothesis> {
     if is_unlikely(part, picture, camera, &pose) {
         return None;
@@ -240,7 +254,7 @@ pub fn drawn(
     for (k, &reach) in reaches.iter().enumerate() {
         let view = part.view(&eye(&pose));
         let stride = if k + 1 < reaches.len() { stride } else { 1 };
-        let pulls = pulls(part, picture, camera, &pose, view, (reach, stride));
+        let pulls = pulls(part, picture, camera, &pose, view, reach, stride);
         if pulls.len() < 8 {
             return None;
         }
@@ -308,7 +322,8 @@ fn pulls(
     camera: &Pinhole,
     pose: &Isometry3<f64>,
     view: &crate::part::PartView,
-    (reach, stride): (f64, usize),
+    reach: f64,
+    stride: usize,
 ) -> Vec<PointToLine> {
     let mut all = Vec::new();
     for mark in visible(part, view, eye(pose)).step_by(stride) {

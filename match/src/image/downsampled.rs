@@ -6,16 +6,30 @@ use premio_detect::Grey;
 /// The longest side of an image, in pixels; larger ones are halved.
 const LONGEST: usize = 1280;
 
-/// The image halved until its longer side is at most `LONGEST`, its camera, and the factor of the
-/// reduction: one, two, four and so on.
-pub fn downsampled(grey: Grey, camera: Pinhole) -> (Grey, Pinhole, u32) {
+/// A reduced image.
+#[derive(Clone, Debug)]
+pub struct DownsampledImage {
+    /// The image.
+    pub grey: Grey,
+    /// Its camera.
+    pub camera: Pinhole,
+    /// The factor of the reduction: one, two, four and so on.
+    pub scale: u32,
+}
+
+/// The image halved until its longer side is at most `LONGEST`.
+pub fn downsampled(grey: Grey, camera: Pinhole) -> DownsampledImage {
     let (mut grey, mut camera, mut scale) = (grey, camera, 1);
     while grey.width.max(grey.height) > LONGEST {
         grey = halved(&grey);
         camera = camera.halved();
         scale *= 2;
     }
-    (grey, camera, scale)
+    DownsampledImage {
+        grey,
+        camera,
+        scale,
+    }
 }
 
 /// The image of the means of 2 × 2 pixels. An odd last column or row is cut off.
@@ -41,7 +55,11 @@ mod tests {
             skew: 2.0,
         };
         let grey = Grey::new(4000, 3001, |x, y| ((x + 2 * y) % 251) as f32);
-        let (small, near, scale) = downsampled(grey, camera);
+        let DownsampledImage {
+            grey: small,
+            camera: near,
+            scale,
+        } = downsampled(grey, camera);
         assert_eq!((small.width, small.height, scale), (1000, 750, 4));
         for p in [[0.1, 0.2, 2.0], [-0.5, 0.3, 1.5], [0.0, 0.0, 1.0]] {
             let p = Point3::from(p);
@@ -50,7 +68,7 @@ mod tests {
                 assert!((4.0 * (after[i] + 0.5) - 0.5 - before[i]).abs() < 1e-9);
             }
         }
-        let (same, whole, scale) = downsampled(small.clone(), near);
-        assert_eq!((same, whole, scale), (small, near, 1));
+        let same = downsampled(small.clone(), near);
+        assert_eq!((same.grey, same.camera, same.scale), (small, near, 1));
     }
 }

@@ -6,7 +6,7 @@ mod edges;
 mod lines;
 
 pub use corners::{LineCorner, LinePath, chains};
-pub use downsampled::downsampled;
+pub use downsampled::{DownsampledImage, downsampled};
 pub use edges::{EdgeHit, Edges, PIECE, Reach, bin};
 pub use lines::{ImageLine, lines};
 

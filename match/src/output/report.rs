@@ -240,7 +240,8 @@ impl MatchReport {
         [image, name]: [&str; 2],
         picture: &ImageFeatures,
         finding: &SearchResult,
-        (scale, seconds): (u32, MatchSeconds),
+        scale: u32,
+        seconds: MatchSeconds,
     ) -> Self {
         let best = finding.best();
         let found = best.is_some_and(PartMatch::is_accepted);

@@ -70,11 +70,16 @@ pub struct PartView {
 }
 
 /// The sharp edges of a part, with their samples.
-pub fn marks(
-    brep: &Brep,
-    radius: f64,
-    states: impl Fn(EdgeId) -> [[f64; 3]; 2],
-) -> (Vec<SampledEdge>, Vec<EdgeSample>) {
+#[derive(Clone, Debug)]
+pub struct SampledEdges {
+    /// The edges.
+    pub strokes: Vec<SampledEdge>,
+    /// The samples of all edges.
+    pub marks: Vec<EdgeSample>,
+}
+
+/// The sharp edges of a part, with their samples.
+pub fn marks(brep: &Brep, radius: f64, states: impl Fn(EdgeId) -> [[f64; 3]; 2]) -> SampledEdges {
     let (mut strokes, mut marks) = (Vec::new(), Vec::new());
     for edge in brep.topology.edge_ids() {
         if brep.topology.edge(edge).smooth {
@@ -116,5 +121,5 @@ pub fn marks(
             length,
         });
     }
-    (strokes, marks)
+    SampledEdges { strokes, marks }
 }

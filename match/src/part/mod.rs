@@ -8,6 +8,7 @@ mod symmetry;
 mod visibility_cache;
 
 pub use chain::PartChain;
+use edge_samples::SampledEdges;
 pub use edge_samples::{EdgeSample, PartView, SampledEdge};
 pub use symmetry::Symmetry;
 
@@ -64,10 +65,10 @@ impl<'a> SoughtPart<'a> {
         let states = |edge: EdgeId| learned.states(&ArcSource::Edge { edge: edge.0 });
         let hull = bounding_box::bounds(brep);
         let (centre, radius) = (hull.centre(), 0.5 * hull.diagonal());
-        let (strokes, marks) = edge_samples::marks(brep, radius, states);
+        let SampledEdges { strokes, marks } = edge_samples::marks(brep, radius, states);
         let all = chains(brep, &strokes);
         let axis = symmetry::axis(brep, &strokes, radius);
-        let symmetries = symmetry::symmetries(brep, (&strokes, &marks), radius, axis.as_ref());
+        let symmetries = symmetry::symmetries(brep, &strokes, &marks, radius, axis.as_ref());
         Self {
             brep,
             resolution,

@@ -39,7 +39,8 @@ pub struct Symmetry {
 /// about it.
 pub fn symmetries(
     brep: &Brep,
-    (strokes, marks): (&[SampledEdge], &[EdgeSample]),
+    strokes: &[SampledEdge],
+    marks: &[EdgeSample],
     radius: f64,
     axis: Option<&Frame>,
 ) -> Vec<Symmetry> {

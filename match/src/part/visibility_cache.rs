@@ -163,8 +163,8 @@ mod tests {
 
     fn is_visible(contour: &Contour, t: f64) -> bool {
         let within = |piece: &&ContourPiece| {
-            let [from, to] = piece.t;
-            let t = contour.curve3.in_cycle(t, from);
+            let [from, to] = piece.range;
+            let t = contour.space_curve.in_cycle(t, from);
             t >= from && t <= to
         };
         contour
@@ -211,13 +211,16 @@ mod tests {
             // The visible share of every limb's length agrees, within a sample at each end of a
             // piece.
             for contour in all.iter().filter(|c| c.kind == ContourKind::Limb) {
-                let length = |p: &ContourPiece| p.t[1] - p.t[0];
+                let length = |p: &ContourPiece| p.range[1] - p.range[0];
                 let shown = contour.pieces.iter().filter(|p| p.visible).map(length);
                 let share = shown.sum::<f64>() / contour.pieces.iter().map(length).sum::<f64>();
                 let own = |m: &&EdgeSample| {
-                    let curve = &contour.curve3;
-                    let t = curve.in_cycle(curve.parameter(&m.point), contour.pieces[0].t[0]);
-                    let within = contour.pieces.iter().any(|p| t >= p.t[0] && t <= p.t[1]);
+                    let curve = &contour.space_curve;
+                    let t = curve.in_cycle(curve.parameter(&m.point), contour.pieces[0].range[0]);
+                    let within = contour
+                        .pieces
+                        .iter()
+                        .any(|p| t >= p.range[0] && t <= p.range[1]);
                     within && (curve.point(t) - m.point).norm() < part.resolution.sqrt()
                 };
                 let marks = view.limbs.iter().filter(own).count() as f64 / MARKS as f64;

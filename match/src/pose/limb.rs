@@ -164,9 +164,9 @@ mod tests {
             let surface = brep.surface(contour.faces[0]);
             for piece in &contour.pieces {
                 for k in 1..20 {
-                    let t = piece.t[0] + (piece.t[1] - piece.t[0]) * k as f64 / 20.0;
-                    let at = (planted * contour.curve3.point(t)).coords;
-                    let along = planted * contour.curve3.tangent(t);
+                    let t = piece.range[0] + (piece.range[1] - piece.range[0]) * k as f64 / 20.0;
+                    let at = (planted * contour.space_curve.point(t)).coords;
+                    let along = planted * contour.space_curve.tangent(t);
                     let normal = at.cross(&along).normalize();
                     let touches = touches(&normal, planted, surface, [0.5, 2.0]);
                     assert!(!touches.is_empty());

@@ -84,7 +84,7 @@ impl ArcRaster {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             if let Some([from, to]) = self.clip(a, b) {
                 let place = |p: [i32; 2]| {
-                    let (s, _) = nearest_on(&a, &b, &p.map(f64::from));
+                    let s = nearest_on(&a, &b, &p.map(f64::from)).fraction;
                     (
                         before + s * length,
                         [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])],

@@ -29,25 +29,26 @@ impl Contrast {
     }
 }
 
-/// The regions on the sides of an arc: by section, the left and the right one.
-pub fn sides(regions: &Regions, (arc, shown): (usize, &PredictedArc)) -> Vec<[u32; 2]> {
-    if let Some(region) = shown.within {
+/// The regions on the sides of an arc with a number: by section, the left and the right one.
+pub fn sides(regions: &Regions, number: usize, arc: &PredictedArc) -> Vec<[u32; 2]> {
+    if let Some(region) = arc.within {
         return vec![[region; 2]];
     }
-    let sections = regions.sections.of_arc(arc);
+    let sections = regions.sections.of_arc(number);
     sections
         .map(|s| [ArcSide::Left, ArcSide::Right].map(|on| regions.adjacent(s, on)))
         .collect()
 }
 
-/// The brightness along an arc within a part of it.
+/// The brightness along an arc with a number, within a part of it.
 pub fn contrast(
     shading: &Shading<'_>,
     regions: &Regions,
-    (number, arc): (usize, &PredictedArc),
+    number: usize,
+    arc: &PredictedArc,
     [start, end]: [f64; 2],
 ) -> Vec<Contrast> {
-    let sides = sides(regions, (number, arc));
+    let sides = sides(regions, number, arc);
     let steps = ((end - start) / EVERY).ceil().max(1.0);
     let mut found = Vec::new();
     let (mut before, mut section) = (0.0, 0);

@@ -87,10 +87,10 @@ pub fn evidence(
         let [from, to] = segment.range.map(|i| i as usize);
         for &i in &chain.pixels[from..to] {
             let pixel = &detection.pixels[i as usize];
-            if let Some((arc, along, off)) = nearest(ink, pixel, criteria.reach) {
-                marks[arc as usize].push(Mark {
-                    along,
-                    off,
+            if let Some(near) = nearest(ink, pixel, criteria.reach) {
+                marks[near.arc as usize].push(Mark {
+                    along: near.along,
+                    off: near.off,
                     segment: number as u32,
                 });
             }
@@ -103,12 +103,23 @@ pub fn evidence(
         .collect()
 }
 
-/// The arc of an edge pixel, the length along it, and the distance from it.
-fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, f64)> {
+/// The arc nearest to an edge pixel.
+#[derive(Clone, Copy)]
+struct NearestArc {
+    arc: u32,
+    /// The length along it, in pixels.
+    along: f64,
+    /// The signed distance from it, in pixels.
+    off: f64,
+    cost: f64,
+}
+
+/// The arc of an edge pixel.
+fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<NearestArc> {
     let window = reach.ceil() as i64;
     let gradient = pixel.gradient;
     let strength = gradient[0].hypot(gradient[1]);
-    let mut best: Option<(f64, (u32, f64, f64))> = None;
+    let mut best: Option<NearestArc> = None;
     for y in -window..=window {
         for x in -window..=window {
             for near in ink.at(i64::from(pixel.x) + x, i64::from(pixel.y) + y) {
@@ -121,13 +132,18 @@ fn nearest(ink: &ArcRaster, pixel: &EdgePixel, reach: f64) -> Option<(u32, f64, 
                 }
                 // An edge at the greatest angle costs as much as one at a distance of one pixel.
                 let cost = d[0].hypot(d[1]) + (1.0 - aligned) / (1.0 - ALIGNED);
-                if best.is_none_or(|known| cost < known.0) {
-                    best = Some((cost, (near.arc, near.along + along, across)));
+                if best.is_none_or(|known| cost < known.cost) {
+                    best = Some(NearestArc {
+                        arc: near.arc,
+                        along: near.along + along,
+                        off: across,
+                        cost,
+                    });
                 }
             }
         }
     }
-    best.map(|b| b.1)
+    best
 }
 
 /// The detection that results from the edge pixels of an arc.

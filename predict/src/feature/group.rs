@@ -43,7 +43,7 @@ pub fn boundaries(
             let ends = [nodes.of_arcs[i][slot], nodes.of_arcs[i][slot + 1]];
             for (on, along) in [(ArcSide::Left, true), (ArcSide::Right, false)] {
                 let region = regions.adjacent(section, on) as usize;
-                steps[region].push(step(arc, (i, section), ends, along, regions));
+                steps[region].push(step(arc, i, section, ends, along, regions));
             }
         }
     }
@@ -55,12 +55,13 @@ pub fn boundaries(
 
 fn step(
     arc: &PredictedArc,
-    (number, section): (usize, u32),
+    number: usize,
+    section: u32,
     ends: [u32; 2],
     along: bool,
     regions: &Regions,
 ) -> Step {
-    let (_, [from, to]) = regions.sections.all[section as usize];
+    let [from, to] = regions.sections.all[section as usize].ends;
     let points = &arc.line.points;
     let angle = |a: usize, b: usize| {
         let [p, q] = [points[a], points[b]];
@@ -142,7 +143,7 @@ fn boundary(
         if own.last() != Some(&step.arc) {
             own.push(step.arc);
         }
-        let (_, [from, to]) = regions.sections.all[step.section as usize];
+        let [from, to] = regions.sections.all[step.section as usize].ends;
         let sum: f64 = arcs[step.arc as usize].line.points[from..=to]
             .windows(2)
             .map(|w| w[0][0] * w[1][1] - w[0][1] * w[1][0])

@@ -1,15 +1,25 @@
 //! The light that a point of the part sends to the camera (equation 1 of the paper).
 
-use crate::image_arcs::lit_scene::StageError;
+use crate::image_arcs::lit_scene::{StageError, StageLight};
 use crate::image_arcs::pierce::front;
 use crate::image_arcs::{LitScene, RegionSample};
 use crate::prepared_part::PreparedPart;
 use crate::reflectance::{GREEN, Polarisation, SurfaceFinish};
-use crate::setup::light::LightSource;
+use crate::setup::light::{IncidentLight, LightSource};
 use crate::setup::{Conditions, SetupError};
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
+use premio_visibility::ray_casting::FirstHit;
 use std::f64::consts::PI;
+
+/// A point of a face on a line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewedPoint {
+    /// The point.
+    pub point: Point3<f64>,
+    /// The unit direction of the line of sight, into the scene.
+    pub direction: Vector3<f64>,
+}
 
 /// The materials of a part's faces.
 #[derive(Clone, Debug)]
@@ -89,7 +99,7 @@ impl<'s> Shading<'s> {
         finishes: &'s Finishes,
         conditions: &Conditions,
     ) -> Result<Self, SetupError> {
-        let lights = stage.lights.iter().map(|(source, _)| source);
+        let lights = stage.lights.iter().map(|light| &light.source);
         let strength: f64 = lights.clone().map(|source| source.strength()).sum();
         // Without lights the surroundings shine on a white surface from everywhere.
         let strength = if strength > 0.0 {
@@ -129,11 +139,16 @@ impl<'s> Shading<'s> {
             total: around,
             specular: 0.0,
         };
-        for (i, ((source, _), beam)) in self.stage.lights.iter().zip(&self.beams).enumerate() {
+        for (i, (StageLight { source, .. }, beam)) in
+            self.stage.lights.iter().zip(&self.beams).enumerate()
+        {
             if lit >> i & 1 == 0 {
                 continue;
             }
-            let (towards, strength) = source.from(p);
+            let IncidentLight {
+                direction: towards,
+                strength,
+            } = source.from(p);
             let cosine = normal.dot(&towards);
             if cosine > 0.0 {
                 let surface = &beam.surfaces[material];
@@ -147,17 +162,15 @@ impl<'s> Shading<'s> {
 
     /// The point of a face that is visible at a point of the image, with the viewing direction.
     /// `hint` is its approximate distance, and becomes the exact one.
-    pub fn place(
-        &self,
-        at: [f64; 2],
-        face: FaceId,
-        hint: &mut f64,
-    ) -> Option<(Point3<f64>, Vector3<f64>)> {
+    pub fn place(&self, at: [f64; 2], face: FaceId, hint: &mut f64) -> Option<ViewedPoint> {
         let projection = self.stage.view.scene.projection;
-        let (eye, into) = projection.line_of_sight(&Point2::from(at));
-        let far = front(self.stage.subject.brep, face, &eye, &into, *hint)?;
+        let sight = projection.line_of_sight(&Point2::from(at));
+        let far = front(self.stage.subject.brep, face, &sight, *hint)?;
         *hint = far;
-        Some((eye + into * far, into))
+        Some(ViewedPoint {
+            point: sight.origin + sight.direction * far,
+            direction: sight.direction,
+        })
     }
 
     /// Grey levels, before noise and steps, at a point of the image where `seen` is seen.
@@ -171,10 +184,13 @@ impl<'s> Shading<'s> {
             .face
             .and_then(|face| Some((face, self.place(at, face, hint)?)));
         let (radiance, into) = match placed {
-            Some((face, (p, into))) => (self.radiance(face, &p, &-into, seen.lit), into),
+            Some((face, seen_at)) => {
+                let into = seen_at.direction;
+                (self.radiance(face, &seen_at.point, &-into, seen.lit), into)
+            }
             None => {
                 let projection = self.stage.view.scene.projection;
-                let (_, into) = projection.line_of_sight(&Point2::from(at));
+                let into = projection.line_of_sight(&Point2::from(at)).direction;
                 let background = Radiance {
                     total: self.background,
                     specular: 0.0,
@@ -215,9 +231,12 @@ impl<'s> Shading<'s> {
         light: usize,
         hint: &mut f64,
     ) -> Option<f64> {
-        let (p, into) = self.place(at, face, hint)?;
+        let ViewedPoint {
+            point: p,
+            direction: into,
+        } = self.place(at, face, hint)?;
         let normal = self.stage.subject.brep.outward(face, &p);
-        let (towards, _) = self.stage.lights[light].0.from(&p);
+        let towards = self.stage.lights[light].source.from(&p).direction;
         let between = towards - into;
         (normal.dot(&towards) > 0.0).then(|| normal.dot(&between) / between.norm())
     }
@@ -230,7 +249,7 @@ impl<'s> Shading<'s> {
     /// The face on the line of sight through a point of the image, and the lights that reach it
     /// there.
     pub fn cast(&self, at: [f64; 2]) -> RegionSample {
-        let Some((face, point)) = self.stage.seen(at) else {
+        let Some(FirstHit { face, point }) = self.stage.seen(at) else {
             return RegionSample {
                 face: None,
                 point: self.stage.subject.centre,
@@ -239,7 +258,7 @@ impl<'s> Shading<'s> {
         };
         let normal = self.stage.subject.brep.outward(face, &point);
         let reaches = |i: &usize| {
-            let (towards, _) = self.stage.lights[*i].0.from(&point);
+            let towards = self.stage.lights[*i].source.from(&point).direction;
             normal.dot(&towards) > 0.0 && self.stage.is_lit(*i, &point, face)
         };
         let lit = (0..self.stage.lights.len()).filter(reaches);

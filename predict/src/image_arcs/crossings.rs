@@ -1,12 +1,18 @@
 //! Where polylines cross in the image.
 
 use super::arc::PredictedArc;
-use super::flatten::Polyline;
+use super::flatten::{Polyline, PolylinePoint};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, Envelope, RTree};
 
-/// A point of a polyline: a segment, and the fraction along it.
-pub type ArcPoint = (usize, f64);
+/// A point at which an arc crosses a polyline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PolylineCrossing {
+    /// The point of the polyline.
+    pub at: PolylinePoint,
+    /// The arc that crosses; none at an end of the polyline.
+    pub arc: Option<u32>,
+}
 
 type Leaf = GeomWithData<Rectangle<[f64; 2]>, u32>;
 
@@ -31,8 +37,8 @@ impl Lines {
         }
     }
 
-    /// The crossings with another polyline, each with the arc that crosses.
-    pub fn crossings(&self, line: &Polyline) -> Vec<(ArcPoint, Option<u32>)> {
+    /// The crossings with another polyline.
+    pub fn crossings(&self, line: &Polyline) -> Vec<PolylineCrossing> {
         let mut found = Vec::new();
         let hull = AABB::from_points(&line.points);
         for leaf in self.tree.locate_in_envelope_intersecting(hull) {
@@ -41,18 +47,21 @@ impl Lines {
                 if !hull.intersects(&AABB::from_corners(other[0], other[1])) {
                     continue;
                 }
-                for (i, own) in line.segments() {
-                    if let Some(s) = crossing(own, other) {
-                        found.push(((i, s), Some(leaf.data)));
+                for (segment, own) in line.segments() {
+                    if let Some(fraction) = crossing(own, other) {
+                        found.push(PolylineCrossing {
+                            at: PolylinePoint { segment, fraction },
+                            arc: Some(leaf.data),
+                        });
                     }
                 }
             }
         }
         // In an order that does not depend on the tree.
         found.sort_by(|a, b| {
-            (a.0.0, a.1)
-                .cmp(&(b.0.0, b.1))
-                .then(a.0.1.total_cmp(&b.0.1))
+            (a.at.segment, a.arc)
+                .cmp(&(b.at.segment, b.arc))
+                .then(a.at.fraction.total_cmp(&b.at.fraction))
         });
         found
     }

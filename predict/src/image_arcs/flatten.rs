@@ -46,80 +46,129 @@ impl ImageWindow {
     }
 }
 
-/// The projection of a point of a curve: its image in pixels and its depth.
-pub type Shown = (Point2<f64>, f64);
+/// The projection of a point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProjectedPoint {
+    /// Its image in pixels.
+    pub image: Point2<f64>,
+    /// Its depth along the optical axis.
+    pub depth: f64,
+}
+
+/// How fine a polyline has to be, and where.
+#[derive(Clone, Copy, Debug)]
+pub struct FlatteningTolerance<'w> {
+    /// The greatest distance from the curve in pixels.
+    pub fine: f64,
+    /// Where this distance matters.
+    pub window: &'w ImageWindow,
+}
+
+/// A point of a polyline. Points are ordered along the polyline.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct PolylinePoint {
+    /// The index of the segment.
+    pub segment: usize,
+    /// The fraction along the segment.
+    pub fraction: f64,
+}
+
+/// The point of a polyline that is nearest to a given point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint {
+    /// The point.
+    pub at: PolylinePoint,
+    /// The squared distance from the given point, in square pixels.
+    pub square: f64,
+}
+
+/// The point of a segment that is nearest to a given point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestOnSegment {
+    /// The fraction along the segment, from 0 to 1.
+    pub fraction: f64,
+    /// The squared distance from the given point.
+    pub square: f64,
+}
+
+/// A point of a curve with its parameter.
+#[derive(Clone, Copy)]
+struct CurvePoint {
+    t: f64,
+    shown: ProjectedPoint,
+}
 
 /// The image of `curve` over a range. A straight one has two points; another is halved until it is
-/// within `fine` in the window. None where a point of it cannot be projected.
+/// as fine as required. None where a point of it cannot be projected.
 pub fn flatten(
-    curve: impl Fn(f64) -> Option<Shown>,
+    curve: impl Fn(f64) -> Option<ProjectedPoint>,
     [from, to]: [f64; 2],
     straight: bool,
-    (fine, window): (f64, &ImageWindow),
+    tolerance: FlatteningTolerance<'_>,
 ) -> Option<Polyline> {
     let mut line = Polyline::default();
     line.push(from, curve(from)?);
     let pieces = if straight { 1 } else { 8 };
     for k in 1..=pieces {
         let t = from + (to - from) * (f64::from(k) / f64::from(pieces));
-        let end = curve(t)?;
+        let end = CurvePoint {
+            t,
+            shown: curve(t)?,
+        };
         let start = line.last()?;
         if !straight {
-            halve(
-                &curve,
-                [start, (t, end)],
-                DEEPEST,
-                (fine, window),
-                &mut line,
-            )?;
+            halve(&curve, [start, end], DEEPEST, tolerance, &mut line)?;
         }
-        line.push(t, end);
+        line.push(t, end.shown);
     }
     Some(line)
 }
 
 /// Adds the points between two of a curve that are needed to be within `fine`.
 fn halve(
-    curve: &impl Fn(f64) -> Option<Shown>,
-    [a, b]: [(f64, Shown); 2],
+    curve: &impl Fn(f64) -> Option<ProjectedPoint>,
+    [a, b]: [CurvePoint; 2],
     deeper: u32,
-    (fine, window): (f64, &ImageWindow),
+    tolerance: FlatteningTolerance<'_>,
     line: &mut Polyline,
 ) -> Option<()> {
     if deeper == 0 {
         return Some(());
     }
-    let at = |part: f64| a.0 + (b.0 - a.0) * part;
+    let FlatteningTolerance { fine, window } = tolerance;
+    let at = |part: f64| a.t + (b.t - a.t) * part;
     let t = at(0.5);
-    let middle = curve(t)?;
-    let [p, q] = [a.1.0, b.1.0];
+    let middle = CurvePoint {
+        t,
+        shown: curve(t)?,
+    };
+    let [p, q] = [a.shown.image, b.shown.image];
     let off = |r: &Point2<f64>| off_chord(&[p.x, p.y], &[q.x, q.y], &[r.x, r.y]);
-    let mut bend = off(&middle.0);
+    let mut bend = off(&middle.shown.image);
     if bend <= fine {
         // A curve with an inflection may have its middle on its chord.
-        bend = bend.max(off(&curve(at(ASIDE))?.0));
+        bend = bend.max(off(&curve(at(ASIDE))?.image));
     }
     let is_near = window.intersects(&[p.x, p.y], &[q.x, q.y], 4.0 * bend);
     if bend <= fine || !is_near {
         // The point is known: it makes the polyline finer by a factor of four.
-        line.push(t, middle);
+        line.push(t, middle.shown);
         return Some(());
     }
-    halve(curve, [a, (t, middle)], deeper - 1, (fine, window), line)?;
-    line.push(t, middle);
-    halve(curve, [(t, middle), b], deeper - 1, (fine, window), line)
+    halve(curve, [a, middle], deeper - 1, tolerance, line)?;
+    line.push(t, middle.shown);
+    halve(curve, [middle, b], deeper - 1, tolerance, line)
 }
 
 /// The distance of a point from a segment.
 pub fn off_chord(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> f64 {
-    let (s, _) = nearest_on(a, b, p);
+    let s = nearest_on(a, b, p).fraction;
     let at = [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])];
     (p[0] - at[0]).hypot(p[1] - at[1])
 }
 
-/// The fraction along a segment of the point nearest to `p`, from 0 to 1, with its squared
-/// distance.
-pub fn nearest_on(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> (f64, f64) {
+/// The point of a segment that is nearest to `p`.
+pub fn nearest_on(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> NearestOnSegment {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
     let along = (p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1];
@@ -129,25 +178,35 @@ pub fn nearest_on(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> (f64, f64) {
         0.0
     };
     let off = [a[0] + s * d[0] - p[0], a[1] + s * d[1] - p[1]];
-    (s, off[0] * off[0] + off[1] * off[1])
+    NearestOnSegment {
+        fraction: s,
+        square: off[0] * off[0] + off[1] * off[1],
+    }
 }
 
 impl Polyline {
     /// Adds a point at its end.
     pub fn add(&mut self, t: f64, [x, y]: [f64; 2], depth: f64) {
-        self.push(t, (Point2::new(x, y), depth));
+        let image = Point2::new(x, y);
+        self.push(t, ProjectedPoint { image, depth });
     }
 
-    fn push(&mut self, t: f64, (p, depth): Shown) {
-        self.points.push([p.x, p.y]);
+    fn push(&mut self, t: f64, shown: ProjectedPoint) {
+        self.points.push([shown.image.x, shown.image.y]);
         self.parameters.push(t);
-        self.depths.push(depth);
+        self.depths.push(shown.depth);
     }
 
-    fn last(&self) -> Option<(f64, Shown)> {
+    fn last(&self) -> Option<CurvePoint> {
         let i = self.points.len().checked_sub(1)?;
         let [x, y] = self.points[i];
-        Some((self.parameters[i], (Point2::new(x, y), self.depths[i])))
+        Some(CurvePoint {
+            t: self.parameters[i],
+            shown: ProjectedPoint {
+                image: Point2::new(x, y),
+                depth: self.depths[i],
+            },
+        })
     }
 
     /// The segments, each by its end points.
@@ -162,9 +221,9 @@ impl Polyline {
             .sum()
     }
 
-    /// The parameter at a fraction `s` of the segment `i`: equal steps in space have shorter images
-    /// the deeper they are.
-    pub fn parameter(&self, i: usize, s: f64) -> f64 {
+    /// The parameter at a point: equal steps in space have shorter images the deeper they are.
+    pub fn parameter(&self, at: PolylinePoint) -> f64 {
+        let (i, s) = (at.segment, at.fraction);
         let [z0, z1] = [self.depths[i], self.depths[i + 1]];
         let [t0, t1] = [self.parameters[i], self.parameters[i + 1]];
         let share = s * z0 / ((1.0 - s) * z1 + s * z0);
@@ -174,90 +233,112 @@ impl Polyline {
         }
     }
 
-    /// The point at a fraction `s` of the segment `i`.
-    pub fn at(&self, i: usize, s: f64) -> [f64; 2] {
+    /// The position of a point.
+    pub fn position(&self, at: PolylinePoint) -> [f64; 2] {
+        let (i, s) = (at.segment, at.fraction);
         let [a, b] = [self.points[i], self.points[i + 1]];
         [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
     }
 
-    /// The segment and the fraction of it at a length along the polyline, in pixels; the end
-    /// beyond.
-    pub fn place_at(&self, along: f64) -> (usize, f64) {
+    /// The point at a length along the polyline, in pixels; the end beyond.
+    pub fn place_at(&self, along: f64) -> PolylinePoint {
         let mut left = along.max(0.0);
         for (i, [a, b]) in self.segments() {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             if left <= length && length > 0.0 {
-                return (i, left / length);
+                return PolylinePoint {
+                    segment: i,
+                    fraction: left / length,
+                };
             }
             left -= length;
         }
-        (self.points.len().saturating_sub(2), 1.0)
+        PolylinePoint {
+            segment: self.points.len().saturating_sub(2),
+            fraction: 1.0,
+        }
     }
 
     /// The parameter at a length along it, in pixels.
     pub fn parameter_at(&self, along: f64) -> f64 {
-        let (i, s) = self.place_at(along);
-        self.parameter(i, s)
+        self.parameter(self.place_at(along))
     }
 
-    /// The point at a length along it, in pixels.
+    /// The position at a length along it, in pixels.
     pub fn point_at(&self, along: f64) -> [f64; 2] {
-        let (i, s) = self.place_at(along);
-        self.at(i, s)
+        self.position(self.place_at(along))
     }
 
-    /// The segment nearest to a point and the fraction of it, with the squared distance.
-    pub fn nearest(&self, p: &[f64; 2]) -> Option<(usize, f64, f64)> {
-        let mut best: Option<(usize, f64, f64)> = None;
+    /// The point nearest to a given one.
+    pub fn nearest(&self, p: &[f64; 2]) -> Option<NearestPoint> {
+        let mut best: Option<NearestPoint> = None;
         for (i, [a, b]) in self.segments() {
-            let (s, square) = nearest_on(&a, &b, p);
-            if best.is_none_or(|known| square < known.2) {
-                best = Some((i, s, square));
+            let NearestOnSegment { fraction, square } = nearest_on(&a, &b, p);
+            if best.is_none_or(|known| square < known.square) {
+                let at = PolylinePoint {
+                    segment: i,
+                    fraction,
+                };
+                best = Some(NearestPoint { at, square });
             }
         }
         best
     }
 
-    /// Inserts a point of the curve into the segment `i`, at a fraction `s` of it.
-    pub fn insert(&mut self, i: usize, s: f64, p: [f64; 2]) {
-        let t = self.parameter(i, s);
-        let depth = 1.0 / ((1.0 - s) / self.depths[i] + s / self.depths[i + 1]);
+    /// The depth at a point.
+    fn depth(&self, at: PolylinePoint) -> f64 {
+        let (i, s) = (at.segment, at.fraction);
+        1.0 / ((1.0 - s) / self.depths[i] + s / self.depths[i + 1])
+    }
+
+    /// Inserts the position of a point of the curve.
+    pub fn insert(&mut self, at: PolylinePoint, p: [f64; 2]) {
+        let t = self.parameter(at);
+        let depth = self.depth(at);
+        let i = at.segment;
         self.points.insert(i + 1, p);
         self.parameters.insert(i + 1, t);
         self.depths.insert(i + 1, depth);
     }
 
-    /// The part from one point to another, each a segment with a fraction of it.
-    pub fn part(&self, from: (usize, f64), to: (usize, f64)) -> Self {
+    /// The part from one point to another.
+    pub fn part(&self, from: PolylinePoint, to: PolylinePoint) -> Self {
         let mut part = Self::default();
-        let depth =
-            |(i, s): (usize, f64)| 1.0 / ((1.0 - s) / self.depths[i] + s / self.depths[i + 1]);
-        let mut add = |place: (usize, f64)| {
-            let [x, y] = self.at(place.0, place.1);
-            let t = self.parameter(place.0, place.1);
-            part.push(t, (Point2::new(x, y), depth(place)));
+        let mut add = |place: PolylinePoint| {
+            let [x, y] = self.position(place);
+            part.add(self.parameter(place), [x, y], self.depth(place));
         };
         add(from);
-        for i in from.0 + 1..=to.0 {
-            if (i, 0.0) > from && (i, 0.0) < to {
-                add((i, 0.0));
+        for segment in from.segment + 1..=to.segment {
+            let start = PolylinePoint {
+                segment,
+                fraction: 0.0,
+            };
+            if start > from && start < to {
+                add(start);
             }
         }
         add(to);
         part
     }
 
-    /// The point at half its length, as a segment and a fraction of it.
-    pub fn middle(&self) -> Option<(usize, f64)> {
+    /// The point at half its length.
+    pub fn middle(&self) -> Option<PolylinePoint> {
         let mut left = 0.5 * self.length();
         for (i, [a, b]) in self.segments() {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             if length >= left && length > 0.0 {
-                return Some((i, left / length));
+                return Some(PolylinePoint {
+                    segment: i,
+                    fraction: left / length,
+                });
             }
             left -= length;
         }
-        (self.points.len() > 1).then_some((0, 0.5))
+        (self.points.len() > 1).then_some(PolylinePoint {
+            segment: 0,
+            fraction: 0.5,
+        })
     }
 }
 
@@ -265,6 +346,9 @@ impl Polyline {
 pub fn shown(
     projection: &premio_visibility::camera::projection::Projection,
     p: &Point3<f64>,
-) -> Shown {
-    (projection.project(p), projection.scale(p))
+) -> ProjectedPoint {
+    ProjectedPoint {
+        image: projection.project(p),
+        depth: projection.scale(p),
+    }
 }

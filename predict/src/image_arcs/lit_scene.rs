@@ -1,7 +1,7 @@
 //! The lit scene: a part in front of a camera and under its lights, with the views of all of them.
 
 use super::arc::{ArcSource, PredictedArc};
-use super::flatten::{FINE, ImageWindow, flatten, shown};
+use super::flatten::{FINE, FlatteningTolerance, ImageWindow, NearestPoint, flatten, shown};
 use crate::prepared_part::{PreparedPart, SubjectError};
 use crate::setup::light::{self, LightPlace};
 use crate::setup::viewpoint::Matrices;
@@ -11,7 +11,7 @@ use premio_kernel::brep::topology::FaceId;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::camera::{CameraError, ViewCamera};
 use premio_visibility::contours::{Contour, ContourPiece, Contours, ImageCurve, JunctionKind};
-use premio_visibility::ray_casting::OriginIncidence;
+use premio_visibility::ray_casting::{FirstHit, OriginIncidence};
 use premio_visibility::scene::Scene;
 use premio_visibility::{ViewError, contours};
 use std::collections::HashMap;
@@ -68,6 +68,15 @@ impl Eye {
     }
 }
 
+/// A light with its eyes.
+#[derive(Clone, Debug)]
+pub struct LightEyes {
+    /// The light.
+    pub source: light::LightSource,
+    /// Its eyes.
+    pub eyes: Vec<Eye>,
+}
+
 /// The eyes of a setup: the camera's, and those of the lights. A light within the bounding ball of
 /// the part has two eyes, which look in opposite directions.
 #[derive(Clone, Debug)]
@@ -76,8 +85,8 @@ pub struct Eyes {
     pub matrices: Matrices,
     /// The camera.
     pub camera: Eye,
-    /// By light: its source and its eyes.
-    pub lights: Vec<(light::LightSource, Vec<Eye>)>,
+    /// The lights with their eyes.
+    pub lights: Vec<LightEyes>,
 }
 
 impl Eyes {
@@ -104,7 +113,7 @@ impl Eyes {
                 SetupError::value(format!("light[{i}].position"), error.to_string())
             })?;
             let eyes = cameras.into_iter().map(|c| Eye::new(c, subject)).collect();
-            lights.push((source, eyes));
+            lights.push(LightEyes { source, eyes });
         }
         Ok(Self {
             matrices,
@@ -164,6 +173,15 @@ pub struct Sightings<'a> {
     pub scene: Scene<'a>,
 }
 
+/// A light with its views of the part.
+#[derive(Debug)]
+pub struct StageLight<'a> {
+    /// The light.
+    pub source: light::LightSource,
+    /// Its views.
+    pub views: Vec<Sightings<'a>>,
+}
+
 /// A part in front of its camera and under its lights.
 #[derive(Debug)]
 pub struct LitScene<'a> {
@@ -173,8 +191,8 @@ pub struct LitScene<'a> {
     pub matrices: Matrices,
     /// The camera's view.
     pub view: Sightings<'a>,
-    /// By light: its source, and its views.
-    pub lights: Vec<(light::LightSource, Vec<Sightings<'a>>)>,
+    /// The lights with their views.
+    pub lights: Vec<StageLight<'a>>,
     /// By contour: the index of a limb among those of its face.
     ordinals: Vec<u32>,
 }
@@ -190,9 +208,12 @@ impl<'a> LitScene<'a> {
         };
         let view = see(&eyes.camera).map_err(StageError::View)?;
         let mut lights = Vec::with_capacity(eyes.lights.len());
-        for (i, (source, each)) in eyes.lights.iter().enumerate() {
-            let seen: Result<Vec<_>, _> = each.iter().map(see).collect();
-            lights.push((*source, seen.map_err(|e| StageError::Light(i, e))?));
+        for (i, light) in eyes.lights.iter().enumerate() {
+            let seen: Result<Vec<_>, _> = light.eyes.iter().map(see).collect();
+            lights.push(StageLight {
+                source: light.source,
+                views: seen.map_err(|e| StageError::Light(i, e))?,
+            });
         }
         let ordinals = ordinals(&view.contours);
         Ok(Self {
@@ -212,7 +233,7 @@ impl<'a> LitScene<'a> {
     /// Whether a light is so near to the camera that every visible point is lit, within the
     /// accuracy of polylines: shadows are hidden behind their casters.
     pub fn is_next_to_camera(&self, light: usize) -> bool {
-        let LightPlace::Near(source) = self.lights[light].0.place() else {
+        let LightPlace::Near(source) = self.lights[light].source.place() else {
             return false;
         };
         let Matrices { k, r, t } = &self.matrices;
@@ -224,7 +245,7 @@ impl<'a> LitScene<'a> {
 
     /// Whether a light reaches a point of a face that is turned towards it.
     pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
-        let (_, views) = &self.lights[light];
+        let views = &self.lights[light].views;
         let before = |v: &&Sightings<'_>| views.len() == 1 || v.scene.projection.depth(p) > 0.0;
         let own = |other| {
             if other == face {
@@ -240,7 +261,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// The face that is visible at a point of the image, and the point of it.
-    pub fn seen(&self, at: [f64; 2]) -> Option<(FaceId, Point3<f64>)> {
+    pub fn seen(&self, at: [f64; 2]) -> Option<FirstHit> {
         self.view.scene.nearest(&Point2::from(at))
     }
 }
@@ -251,12 +272,13 @@ impl Sightings<'_> {
     pub fn arcs(&self, ordinals: &[u32], fine: f64, window: &ImageWindow) -> Vec<PredictedArc> {
         let contours = &self.contours;
         let projection = self.scene.projection;
+        let tolerance = FlatteningTolerance { fine, window };
         let mut arcs: Vec<PredictedArc> = Vec::new();
         for contour in &contours.contours {
             let straight = is_straight(contour);
             for piece in contour.pieces.iter().filter(|piece| piece.visible) {
-                let curve = |t: f64| Some(shown(projection, &contour.curve3.point(t)));
-                let Some(mut line) = flatten(curve, piece.t, straight, (fine, window)) else {
+                let curve = |t: f64| Some(shown(projection, &contour.space_curve.point(t)));
+                let Some(mut line) = flatten(curve, piece.range, straight, tolerance) else {
                     continue;
                 };
                 // Pieces with a common end get the same end point, however it was computed.
@@ -295,7 +317,7 @@ pub fn ordinals(contours: &Contours) -> Vec<u32> {
 /// Whether the image of a contour is a straight line that is traversed in one direction.
 pub fn is_straight(contour: &Contour) -> bool {
     matches!(
-        (&contour.curve2, &contour.curve3),
+        (&contour.image_curve, &contour.space_curve),
         (
             ImageCurve::Line { .. },
             premio_kernel::geometry::curve::Curve::Line(_)
@@ -304,7 +326,7 @@ pub fn is_straight(contour: &Contour) -> bool {
 }
 
 fn coefficients(contour: &Contour) -> Vec<f64> {
-    match &contour.curve2 {
+    match &contour.image_curve {
         ImageCurve::Line { coefficients } => coefficients.to_vec(),
         ImageCurve::Conic { coefficients } => coefficients.to_vec(),
         ImageCurve::Point { .. } | ImageCurve::Projected => Vec::new(),
@@ -325,7 +347,7 @@ fn pin(line: &mut super::flatten::Polyline, contours: &Contours, piece: &Contour
     let last = line.points.len() - 1;
     for (end, at) in [(piece.start, 0), (piece.end, last)] {
         if let Some(id) = end {
-            line.points[at] = contours.junctions[id as usize].point2;
+            line.points[at] = contours.junctions[id as usize].image_point;
         }
     }
 }
@@ -354,13 +376,13 @@ fn stop(arcs: &mut [PredictedArc], contours: &Contours) {
         if junction.kind != JunctionKind::T {
             continue;
         }
-        let p = junction.point2;
+        let p = junction.image_point;
         // A limb may pass in front of itself: then one of its pieces ends here, and another does
         // not.
         let on = by_contour.get(before).into_iter().flatten();
         let passing = on.filter(|&&i| !arcs[i].ends_at(p));
         let found = passing.filter_map(|&i| arcs[i].line.nearest(&p).map(|at| (i, at)));
-        let nearest = found.min_by(|a, b| a.1.2.total_cmp(&b.1.2));
+        let nearest = found.min_by(|a, b| a.1.square.total_cmp(&b.1.square));
         if let Some((i, at)) = nearest {
             arcs[i].stop_at(p, at);
         }
@@ -382,10 +404,10 @@ impl PredictedArc {
         self.is_at(0, p) || self.is_at(self.line.points.len() - 1, p)
     }
 
-    /// Records that another arc ends at a point of this one, given its segment and the fraction of
-    /// it.
-    pub fn stop_at(&mut self, p: [f64; 2], (i, s, square): (usize, f64, f64)) {
-        if square > ON || self.ends_at(p) {
+    /// Records that another arc ends at a point, given the nearest point of this one.
+    pub fn stop_at(&mut self, p: [f64; 2], nearest: NearestPoint) {
+        let i = nearest.at.segment;
+        if nearest.square > ON || self.ends_at(p) {
             return;
         }
         if let Some(known) = (i..=i + 1).find(|&k| self.is_at(k, p)) {
@@ -394,7 +416,7 @@ impl PredictedArc {
             }
             return;
         }
-        self.line.insert(i, s, p);
+        self.line.insert(nearest.at, p);
         self.stops
             .iter_mut()
             .filter(|k| **k > i)

@@ -1,31 +1,26 @@
 //! The intersection of a line of sight with the front of a surface that is known to be visible
 //! there.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::surface::{Cone, Surface, Torus};
+use premio_visibility::camera::projection::LineOfSight;
 
 /// The number of Newton's steps on a torus, and of the steps into which its ball is divided where
 /// Newton's method fails.
 const STEPS: usize = 8;
 const CUTS: usize = 64;
 
-/// The distance along a unit direction at which a line intersects the front of a face's surface,
+/// The distance along a line of sight at which it intersects the front of a face's surface,
 /// near `hint` where there are several intersections. A line that just misses the surface gets the
 /// point nearest to it: its limb.
-pub fn front(
-    brep: &Brep,
-    face: FaceId,
-    origin: &Point3<f64>,
-    into: &Vector3<f64>,
-    hint: f64,
-) -> Option<f64> {
+pub fn front(brep: &Brep, face: FaceId, sight: &LineOfSight, hint: f64) -> Option<f64> {
     let surface = brep.surface(face);
     let outwards = brep.sense(face) == Sense::Along;
     let f = surface.frame();
-    let q = f.coordinates(origin);
-    let w = f.components(into);
+    let q = f.coordinates(&sight.origin);
+    let w = f.components(&sight.direction);
     let at = match surface {
         Surface::Plane(_) => -q.z / w.z,
         Surface::Cylinder(s) => {

@@ -8,10 +8,13 @@
 
 use super::arc::{ArcSide, PredictedArc};
 use super::lit_scene::LitScene;
-use super::scanline::{APART, LINES, ScanlineCrossing, Scanlines, Sections, line_at, line_y};
+use super::scanline::{
+    APART, ArcSection, LINES, ScanlineCrossing, Scanlines, Sections, line_at, line_y,
+};
 use nalgebra::Point3;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::surface::Surface;
+use premio_visibility::ray_casting::FirstHit;
 
 /// The number of bands of a region from which sample points are taken.
 const BANDS: usize = 3;
@@ -236,7 +239,10 @@ impl Regions {
     /// there loses its content: arcs leave a gap that no scanline passes.
     fn check_sections(&mut self, stage: &LitScene<'_>, arcs: &[PredictedArc]) {
         for section in 0..self.sections.all.len() {
-            let (arc, [from, to]) = self.sections.all[section];
+            let ArcSection {
+                arc,
+                ends: [from, to],
+            } = self.sections.all[section];
             let line = &arcs[arc as usize].line;
             let middle = (from + to) / 2;
             let [a, b] = [line.points[middle], line.points[middle + 1]];
@@ -309,15 +315,15 @@ fn join(on: &[ScanlineCrossing], sets: &mut Sets) {
 /// Whether the view at a point of a region agrees with its content.
 fn agrees(stage: &LitScene<'_>, content: &RegionSample, at: [f64; 2]) -> bool {
     let met = stage.seen(at);
-    if met.map(|(face, _)| face) != content.face {
+    if met.map(|hit| hit.face) != content.face {
         return false;
     }
-    let Some((face, p)) = met else {
+    let Some(FirstHit { face, point: p }) = met else {
         return true;
     };
     let normal = stage.subject.brep.outward(face, &p);
     (0..stage.lights.len()).all(|light| {
-        let (towards, _) = stage.lights[light].0.from(&p);
+        let towards = stage.lights[light].source.from(&p).direction;
         let content = content.lit >> light & 1 == 1;
         normal.dot(&towards) <= GRAZING || stage.is_lit(light, &p, face) == content
     })
@@ -329,8 +335,10 @@ fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Reg
     let points = &region.points;
     let first = stage.seen(points.first()?.0);
     // A flat region is uniform, and in a small one few pixels can be wrong.
-    let flat =
-        |(face, _): &(FaceId, _)| matches!(stage.subject.brep.surface(*face), Surface::Plane(_));
+    let flat = |hit: &FirstHit| {
+        let surface = stage.subject.brep.surface(hit.face);
+        matches!(surface, Surface::Plane(_))
+    };
     let step = if first.as_ref().is_none_or(flat) || region.area < SMALL {
         ACROSS.len()
     } else {
@@ -341,7 +349,7 @@ fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Reg
         .step_by(step)
         .skip(1)
         .map(|&(at, _)| stage.seen(at));
-    let Some((face, point)) = first else {
+    let Some(FirstHit { face, point }) = first else {
         let same = hits.all(|hit| hit.is_none());
         return same.then_some(RegionSample {
             face: None,
@@ -351,7 +359,7 @@ fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Reg
     };
     let mut all = vec![point];
     for hit in hits {
-        all.push(hit.filter(|h| h.0 == face)?.1);
+        all.push(hit.filter(|h| h.face == face)?.point);
     }
     let mut lit = 0u64;
     for (light, votes) in (0..stage.lights.len()).zip(votes) {
@@ -374,9 +382,9 @@ fn is_lit(
     points: &[Point3<f64>],
     votes: [u32; 2],
 ) -> Option<bool> {
-    let source = &stage.lights[light].0;
+    let source = &stage.lights[light].source;
     let turned = |p: &&Point3<f64>| {
-        let (towards, _) = source.from(p);
+        let towards = source.from(p).direction;
         stage.subject.brep.outward(face, p).dot(&towards) > GRAZING
     };
     let mut cast = points

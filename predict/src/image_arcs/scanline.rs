@@ -29,12 +29,21 @@ pub struct ScanlineCrossing {
     pub slant: f64,
 }
 
+/// A piece of an arc between two points at which others end on it, or its own ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArcSection {
+    /// The arc.
+    pub arc: u32,
+    /// The points of the arc's polyline at both ends.
+    pub ends: [usize; 2],
+}
+
 /// The sections of arcs: the pieces between two points at which others end on them, or their own
 /// ends.
 #[derive(Clone, Debug, Default)]
 pub struct Sections {
-    /// By section: its arc, and the points of the arc's polyline at its ends.
-    pub all: Vec<(u32, [usize; 2])>,
+    /// The sections.
+    pub all: Vec<ArcSection>,
     /// By arc: the index of its first section; after the last arc the number of all sections.
     first: Vec<u32>,
 }
@@ -47,7 +56,10 @@ impl Sections {
             sections.first.push(sections.all.len() as u32);
             let mut from = 0;
             for &to in arc.stops.iter().chain([&(arc.line.points.len() - 1)]) {
-                sections.all.push((i as u32, [from, to]));
+                sections.all.push(ArcSection {
+                    arc: i as u32,
+                    ends: [from, to],
+                });
                 from = to;
             }
         }
@@ -157,7 +169,11 @@ fn each(
     lines: usize,
     mut report: impl FnMut(usize, ScanlineCrossing),
 ) {
-    for (id, &(arc, [from, to])) in sections.all.iter().enumerate() {
+    for (id, section) in sections.all.iter().enumerate() {
+        let ArcSection {
+            arc,
+            ends: [from, to],
+        } = *section;
         let points = &arcs[arc as usize].line.points;
         let ends = [points[from][1], points[to][1]];
         for pair in points[from..=to].windows(2) {

@@ -3,15 +3,18 @@
 //! extended along its lines of sight.
 
 use super::arc::{ArcSide, ArcSource, PredictedArc, Shade};
-use super::crossings::{ArcPoint, Lines};
-use super::flatten::{FINE, ImageWindow, Polyline, Shown, flatten, shown};
-use super::lit_scene::{LitScene, Sightings, ordinals};
+use super::crossings::{Lines, PolylineCrossing};
+use super::flatten::{
+    FINE, FlatteningTolerance, ImageWindow, Polyline, PolylinePoint, ProjectedPoint, flatten, shown,
+};
+use super::lit_scene::{LitScene, Sightings, StageLight, ordinals};
 use super::pierce::front;
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_visibility::contours::Contour;
+use premio_visibility::ray_casting::FirstHit;
 
 /// The lateral distance from a contour at which its sides are evaluated, relative to the part's
 /// size.
@@ -25,6 +28,12 @@ const BEHIND: f64 = 1.0 / 1024.0;
 /// The length in pixels by which the ends of a shadow's boundary are extended, so that they reach
 /// the arcs on which they end, which are accurate to [`FINE`].
 const OVERLAP: f64 = 2.0 * FINE;
+
+/// The end of a shadow's boundary on an arc.
+struct ArcEnd {
+    arc: u32,
+    point: [f64; 2],
+}
 
 /// A piece of a contour of a light's view, in front of a face that it partly hides.
 struct Cast<'c> {
@@ -43,7 +52,7 @@ pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<Pr
     let lines = Lines::new(arcs);
     let mut found = Vec::new();
     let mut ends = Vec::new();
-    for (light, (_, views)) in stage.lights.iter().enumerate() {
+    for (light, StageLight { views, .. }) in stage.lights.iter().enumerate() {
         if stage.is_next_to_camera(light) {
             continue;
         }
@@ -79,10 +88,10 @@ pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<Pr
             }
         }
     }
-    for (arc, p) in ends {
+    for ArcEnd { arc, point } in ends {
         let arc: &mut PredictedArc = &mut arcs[arc as usize];
-        if let Some(at) = arc.line.nearest(&p) {
-            arc.stop_at(p, at);
+        if let Some(at) = arc.line.nearest(&point) {
+            arc.stop_at(point, at);
         }
     }
     arcs.extend(found);
@@ -132,12 +141,12 @@ fn terminator(
     let contour = &view.contours.contours[limb.contour? as usize];
     let camera = stage.view.scene.projection;
     let curve = |t: f64| {
-        let p = contour.curve3.point(t);
+        let p = contour.space_curve.point(t);
         (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
     };
     let range = [limb.line.parameters[0], *limb.line.parameters.last()?];
-    let straight = matches!(contour.curve3, Curve::Line(_));
-    let mut line = flatten(curve, range, straight, (FINE, window))?;
+    let straight = matches!(contour.space_curve, Curve::Line(_));
+    let mut line = flatten(curve, range, straight, tolerance(window))?;
     draw_out(&mut line);
     let light = light as u32;
     Some((
@@ -190,7 +199,7 @@ fn stage_parameter(view: &Sightings<'_>, contour: &Contour, line: &Polyline, k: 
     let p = Point2::from(line.points[k]);
     let step = (line.parameters[k + 1] - line.parameters[k - 1]) * ASIDE;
     for _ in 0..4 {
-        let at = |t: f64| view.scene.projection.project(&contour.curve3.point(t));
+        let at = |t: f64| view.scene.projection.project(&contour.space_curve.point(t));
         let along = (at(t + step) - at(t - step)) / (2.0 * step);
         let off = (p - at(t)).dot(&along) / along.norm_squared();
         if !off.is_finite() {
@@ -212,9 +221,9 @@ fn cast<'v>(
 ) -> Option<Cast<'v>> {
     let projection = view.scene.projection;
     let t = 0.5 * (range[0] + range[1]);
-    let p = contour.curve3.point(t);
+    let p = contour.space_curve.point(t);
     let step = (range[1] - range[0]) * ASIDE;
-    let image = |t: f64| projection.project(&contour.curve3.point(t));
+    let image = |t: f64| projection.project(&contour.space_curve.point(t));
     let along = image(t + step) - image(t - step);
     let across = nalgebra::Vector2::new(-along.y, along.x) / along.norm();
     if !across.x.is_finite() {
@@ -226,9 +235,9 @@ fn cast<'v>(
     let first = (towards - projection.project(&p)).dot(&across).signum();
     [first, -first].into_iter().find_map(|side| {
         let aside = projection.project(&p) + across * (side * size * ASIDE);
-        let (face, q) = view.scene.nearest(&aside)?;
+        let FirstHit { face, point: q } = view.scene.nearest(&aside)?;
         let jump = projection.depth(&q) - depth;
-        let (origin, _) = projection.line_of_sight(&aside);
+        let origin = projection.line_of_sight(&aside).origin;
         (jump > BEHIND * stage.subject.radius).then(|| Cast {
             contour,
             range,
@@ -248,7 +257,7 @@ fn open_direction(
     contour: &Contour,
     p: &Point3<f64>,
 ) -> Option<Vector3<f64>> {
-    let (towards, _) = view.scene.projection.towards_eye(p);
+    let towards = view.scene.projection.towards_eye(p).direction;
     let outward = |face: &FaceId| stage.subject.brep.outward(*face, p);
     let is_turned = |n: &Vector3<f64>| n.dot(&towards) > 0.0;
     let normals = || contour.faces.iter().map(outward);
@@ -265,13 +274,18 @@ fn open_direction(
 }
 
 /// The projection on the ground of the point of a cast at a parameter, as the camera sees it.
-fn fall(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>, t: f64) -> Option<Shown> {
+fn fall(
+    stage: &LitScene<'_>,
+    view: &Sightings<'_>,
+    cast: &Cast<'_>,
+    t: f64,
+) -> Option<ProjectedPoint> {
     let light = view.scene.projection;
     let camera = stage.view.scene.projection;
-    let image = light.project(&cast.contour.curve3.point(t));
-    let (origin, into) = light.line_of_sight(&image);
-    let far = front(stage.subject.brep, cast.ground, &origin, &into, cast.hint)?;
-    let p = origin + into * far;
+    let image = light.project(&cast.contour.space_curve.point(t));
+    let sight = light.line_of_sight(&image);
+    let far = front(stage.subject.brep, cast.ground, &sight, cast.hint)?;
+    let p = sight.origin + sight.direction * far;
     (camera.depth(&p) > camera.near).then(|| shown(camera, &p))
 }
 
@@ -282,12 +296,16 @@ fn shadow(
     cast: &Cast<'_>,
     window: &ImageWindow,
 ) -> Option<Polyline> {
-    let straight = matches!(cast.contour.curve3, Curve::Line(_))
+    let straight = matches!(cast.contour.space_curve, Curve::Line(_))
         && matches!(stage.subject.brep.surface(cast.ground), Surface::Plane(_));
     let curve = |t: f64| fall(stage, view, cast, t);
-    let mut line = flatten(curve, cast.range, straight, (FINE, window))?;
+    let mut line = flatten(curve, cast.range, straight, tolerance(window))?;
     draw_out(&mut line);
     Some(line)
+}
+
+fn tolerance(window: &ImageWindow) -> FlatteningTolerance<'_> {
+    FlatteningTolerance { fine: FINE, window }
 }
 
 /// Extends both ends of a polyline by [`OVERLAP`].
@@ -308,7 +326,7 @@ fn draw_out(line: &mut Polyline) {
 fn lit_side(stage: &LitScene<'_>, view: &Sightings<'_>, cast: &Cast<'_>) -> Option<ArcSide> {
     let [from, to] = cast.range;
     let (t, step) = (0.5 * (from + to), (to - from) * ASIDE);
-    let at = |t: f64| fall(stage, view, cast, t).map(|(p, _)| [p.x, p.y]);
+    let at = |t: f64| fall(stage, view, cast, t).map(|p| [p.image.x, p.image.y]);
     let [before, middle, after] = [at(t - step)?, at(t)?, at(t + step)?];
     let lit = stage.view.scene.projection.project(&cast.lit);
     let along = [after[0] - before[0], after[1] - before[1]];
@@ -322,28 +340,37 @@ fn visible_parts(
     lines: &Lines,
     ground: Option<FaceId>,
     line: &Polyline,
-    ends: &mut Vec<(u32, [f64; 2])>,
+    ends: &mut Vec<ArcEnd>,
 ) -> Vec<Polyline> {
-    let mut cuts: Vec<(ArcPoint, Option<u32>)> = lines.crossings(line);
+    let mut cuts = lines.crossings(line);
     let last = line.points.len() - 2;
-    cuts.push(((0, 0.0), None));
-    cuts.push(((last, 1.0), None));
-    cuts.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.0.1.total_cmp(&b.0.1)));
+    let end = |segment: usize, fraction: f64| PolylineCrossing {
+        at: PolylinePoint { segment, fraction },
+        arc: None,
+    };
+    cuts.push(end(0, 0.0));
+    cuts.push(end(last, 1.0));
+    cuts.sort_by(|a, b| {
+        let order = a.at.segment.cmp(&b.at.segment);
+        order.then(a.at.fraction.total_cmp(&b.at.fraction))
+    });
     let mut parts = Vec::new();
     for pair in cuts.windows(2) {
-        let [(from, before), (to, after)] = [pair[0], pair[1]];
-        let part = line.part(from, to);
-        let Some((i, s)) = part.middle().filter(|_| part.length() > OVERLAP) else {
+        let [from, to] = [pair[0], pair[1]];
+        let part = line.part(from.at, to.at);
+        let Some(middle) = part.middle().filter(|_| part.length() > OVERLAP) else {
             continue;
         };
+        let i = middle.segment;
         let depth = 0.5 * (part.depths[i] + part.depths[i + 1]);
-        let is_seen = stage.seen(part.at(i, s)).is_some_and(|(face, p)| {
-            let off = stage.view.scene.projection.scale(&p) - depth;
-            Some(face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
+        let is_seen = stage.seen(part.position(middle)).is_some_and(|hit| {
+            let off = stage.view.scene.projection.scale(&hit.point) - depth;
+            Some(hit.face) == ground && off.abs() < stage.subject.radius * 64.0 * BEHIND
         });
         if is_seen {
-            for (place, arc) in [(from, before), (to, after)] {
-                ends.extend(arc.map(|arc| (arc, line.at(place.0, place.1))));
+            for cut in [from, to] {
+                let point = line.position(cut.at);
+                ends.extend(cut.arc.map(|arc| ArcEnd { arc, point }));
             }
             parts.push(part);
         }

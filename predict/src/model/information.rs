@@ -34,7 +34,7 @@ fn of_arc(draft: &PredictedImage<'_>, number: usize, evidence: &DetectedArc) -> 
     let Some(contour) = arc.contour.filter(|_| !arc.smooth) else {
         return sum;
     };
-    let curve = &draft.stage.view.contours.contours[contour as usize].curve3;
+    let curve = &draft.stage.view.contours.contours[contour as usize].space_curve;
     let sigma = evidence.off.max(LEAST);
     for fragment in &evidence.fragments {
         let [from, to] = fragment.along;
@@ -54,7 +54,7 @@ fn of_arc(draft: &PredictedImage<'_>, number: usize, evidence: &DetectedArc) -> 
 
 /// The unit direction of an arc in the image at a length along it.
 fn direction(arc: &PredictedArc, along: f64) -> [f64; 2] {
-    let (i, _) = arc.line.place_at(along);
+    let i = arc.line.place_at(along).segment;
     let [a, b] = [arc.line.points[i], arc.line.points[i + 1]];
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
     [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
@@ -108,11 +108,23 @@ pub fn deviation(information: &Matrix6<f64>) -> Option<[f64; 2]> {
     Some([part(0), part(3)])
 }
 
-/// The image of the part's centre, and the length of its radius there, in pixels.
-pub fn frame(draft: &PredictedImage<'_>) -> ([f64; 2], f64) {
+/// The image of a part's bounding ball, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallImage {
+    /// The image of the centre.
+    pub centre: [f64; 2],
+    /// The length of the radius there.
+    pub radius: f64,
+}
+
+/// The image of the part's bounding ball.
+pub fn frame(draft: &PredictedImage<'_>) -> BallImage {
     let projection = draft.stage.view.scene.projection;
     let subject = draft.stage.subject;
     let Point2 { coords } = projection.project(&subject.centre);
     let scale = draft.stage.matrices.k[(0, 0)] * subject.radius / projection.depth(&subject.centre);
-    ([coords.x, coords.y], scale)
+    BallImage {
+        centre: [coords.x, coords.y],
+        radius: scale,
+    }
 }

@@ -1,6 +1,6 @@
 //! The observation of a part in one setup.
 
-use super::information::{deviation, frame, information};
+use super::information::{BallImage, deviation, frame, information};
 use crate::feature::detected_arc::DetectionState;
 use crate::feature::group::chains;
 use crate::feature::junction::{JunctionForm, Nodes, PredictedJunction, junctions};
@@ -210,7 +210,10 @@ fn attributes(
     let fragments = &outcome.evidence[arc as usize].fragments;
     let (from, to) = (fragments.first()?.along[0], fragments.last()?.along[1]);
     let line = &draft.arcs[arc as usize].line;
-    let (middle, scale) = frame(draft);
+    let BallImage {
+        centre: middle,
+        radius: scale,
+    } = frame(draft);
     let [a, b] = [from, to].map(|along| line.point_at(along));
     let d = [b[0] - a[0], b[1] - a[1]];
     // A closed curve has no chord: then any direction is used.

@@ -250,7 +250,8 @@ pub struct Codetection {
 /// The records of a summary after its two rounds.
 pub fn records(
     summary: &Summary,
-    (part, description): (&str, &DescriptionRecord),
+    part: &str,
+    description: &DescriptionRecord,
     digest: &str,
     setups: &Setups,
 ) -> Vec<Record> {

@@ -340,7 +340,7 @@ fn arc_level(
         source: arc.source,
         contour: arc.contour,
         t: [0, arc.line.parameters.len() - 1].map(|k| arc.line.parameters[k]),
-        sides: sides(&draft.regions, (i, arc)),
+        sides: sides(&draft.regions, i, arc),
         smooth: arc.smooth,
         geometry: geometry(arc),
         length: (end - start).max(0.0),

@@ -51,6 +51,15 @@ pub struct Memory {
     detector: Workspace,
 }
 
+/// What the detector finds in one image.
+#[derive(Clone, Debug)]
+pub struct ImageEvidence {
+    /// The detection.
+    pub detection: Detection,
+    /// By arc: the edges found of it.
+    pub arcs: Vec<DetectedArc>,
+}
+
 /// The detections of each arc over noise draws.
 #[derive(Clone, Debug)]
 pub struct DetectionOutcome {
@@ -171,28 +180,25 @@ impl<'s> PredictedImage<'s> {
             image.levels.extend_from_slice(&self.image.levels);
             let seed = hash(self.conditions.seed, u64::from(draw), 0);
             respond(&mut image, &self.domain, sensor, seed);
-            let (detection, evidence) = self.evidence_in(&image, &self.domain);
-            for (count, found) in counts.iter_mut().zip(&evidence) {
+            let evidence = self.evidence_in(&image, &self.domain);
+            for (count, found) in counts.iter_mut().zip(&evidence.arcs) {
                 count[found.state.index()] += 1;
             }
-            all.push((detection, evidence));
+            all.push(evidence);
             self.memory.borrow_mut().noisy = image.levels;
         }
         let usual: Vec<DetectionState> = counts.iter().map(usual).collect();
-        let off = |(_, evidence): &&(Detection, Vec<DetectedArc>)| {
-            evidence
-                .iter()
-                .zip(&usual)
-                .filter(|(e, s)| e.state != **s)
-                .count()
+        let off = |evidence: &&ImageEvidence| {
+            let arcs = evidence.arcs.iter();
+            arcs.zip(&usual).filter(|(e, s)| e.state != **s).count()
         };
         let best = all
             .iter()
             .min_by_key(off)
-            .map(|(detection, _)| detection.clone());
+            .map(|evidence| evidence.detection.clone());
         let shown = |i: usize| {
-            let found = all.iter().find(|(_, e)| e[i].state == usual[i]);
-            found.map(|(_, e)| e[i].clone())
+            let found = all.iter().find(|e| e.arcs[i].state == usual[i]);
+            found.map(|e| e.arcs[i].clone())
         };
         DetectionOutcome {
             detection: best.unwrap_or_default(),
@@ -202,12 +208,15 @@ impl<'s> PredictedImage<'s> {
     }
 
     /// The detections of each arc in an image of the same setup: predicted, rendered or taken.
-    pub fn evidence_in(&self, image: &Grey, domain: &PixelMask) -> (Detection, Vec<DetectedArc>) {
+    pub fn evidence_in(&self, image: &Grey, domain: &PixelMask) -> ImageEvidence {
         let detector = &self.conditions.detector;
         let work = &mut self.memory.borrow_mut().detector;
         let detection = detector.detect_with(work, image, domain);
         let found = evidence(&detection, detector, &self.conditions.features, &self.ink);
-        (detection, found)
+        ImageEvidence {
+            detection,
+            arcs: found,
+        }
     }
 
     /// The brightness on both sides along an arc.
@@ -217,7 +226,8 @@ impl<'s> PredictedImage<'s> {
             true => contrast(
                 &self.shading,
                 &self.regions,
-                (arc, &self.arcs[arc]),
+                arc,
+                &self.arcs[arc],
                 [start, end],
             ),
             false => Vec::new(),

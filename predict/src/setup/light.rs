@@ -118,6 +118,15 @@ pub enum LightPlace {
     Far(Vector3<f64>),
 }
 
+/// The light that reaches a point from a source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IncidentLight {
+    /// L, the unit vector from the point towards the source.
+    pub direction: Vector3<f64>,
+    /// I_l dω_l at the point.
+    pub strength: f64,
+}
+
 impl LightSource {
     /// Prepares a light for a part with this centre.
     pub fn new(light: &Light, centre: &Point3<f64>) -> Self {
@@ -152,17 +161,23 @@ impl LightSource {
         self.place
     }
 
-    /// L, the unit vector from a point towards the light, with I_l dω_l there.
-    pub fn from(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+    /// The light that reaches a point.
+    pub fn from(&self, p: &Point3<f64>) -> IncidentLight {
         match self.place {
-            LightPlace::Far(d) => (d, self.intensity * self.solid_angle),
+            LightPlace::Far(d) => IncidentLight {
+                direction: d,
+                strength: self.intensity * self.solid_angle,
+            },
             LightPlace::Near(o) => {
                 let d = o - p;
                 let square = d.norm_squared();
                 let falloff = self.distance.map_or(1.0, |known| known * known / square);
                 // No source fills more than a hemisphere.
                 let solid_angle = (self.solid_angle * falloff).min(2.0 * PI);
-                (d / square.sqrt(), self.intensity * solid_angle)
+                IncidentLight {
+                    direction: d / square.sqrt(),
+                    strength: self.intensity * solid_angle,
+                }
             }
         }
     }
@@ -181,12 +196,15 @@ mod tests {
     fn a_near_light_falls_off_with_the_square_of_the_distance() {
         let light = Light::at(Point3::new(0.0, 0.0, 10.0));
         let source = LightSource::new(&light, &Point3::origin());
-        let (l, at_centre) = source.from(&Point3::origin());
+        let IncidentLight {
+            direction: l,
+            strength: at_centre,
+        } = source.from(&Point3::origin());
         assert_eq!(l, Vector3::z());
         assert_eq!(at_centre, 1.0);
-        let (_, behind) = source.from(&Point3::new(0.0, 0.0, -10.0));
+        let behind = source.from(&Point3::new(0.0, 0.0, -10.0)).strength;
         assert_eq!(behind, 0.25);
-        let (_, touching) = source.from(&Point3::new(0.0, 0.0, 9.999));
+        let touching = source.from(&Point3::new(0.0, 0.0, 9.999)).strength;
         assert_eq!(touching, 2.0 * PI);
     }
 

@@ -205,6 +205,11 @@ pub fn summed(
     each(&mut |observation| summary.add(observation))?;
     summary.begin_second();
     each(&mut |observation| summary.add_again(observation))?;
-    let part = (run.part.as_str(), &run.description);
-    Ok(records(&summary, part, &run.digest, &run.setups))
+    Ok(records(
+        &summary,
+        &run.part,
+        &run.description,
+        &run.digest,
+        &run.setups,
+    ))
 }

@@ -106,16 +106,16 @@ impl<'a> Images<'a> {
         let mut cells: Vec<Cell<'_>> = Vec::new();
         for contour in &seen.contours {
             for piece in &contour.pieces {
-                let breaks = contour.curve3.breaks(piece.t[0], piece.t[1]);
+                let breaks = contour.space_curve.breaks(piece.range[0], piece.range[1]);
                 for ends in breaks.windows(2) {
                     let at = |k: usize| {
                         let part = k as f64 / (2 * PARTS) as f64;
                         let t = ends[0] + (ends[1] - ends[0]) * part;
-                        (t, window.image(&contour.curve3.point(t)))
+                        (t, window.image(&contour.space_curve.point(t)))
                     };
                     let points: Vec<(f64, Seen)> = (0..=2 * PARTS).map(at).collect();
                     cells.extend(points.windows(3).step_by(2).map(|p| Cell {
-                        curve: &contour.curve3,
+                        curve: &contour.space_curve,
                         visible: piece.visible,
                         layer: Layer::from_contour(contour),
                         t: [p[0].0, p[1].0, p[2].0],

@@ -38,7 +38,7 @@ pub struct WrongPiece {
     /// The position of the sample.
     pub place: [f64; 3],
     /// The range of the piece.
-    pub t: [f64; 2],
+    pub range: [f64; 2],
     /// The invisibility of the piece.
     pub given: u32,
     /// The count by rays.
@@ -108,15 +108,15 @@ impl Recount {
         };
         let mut recount = Self::default();
         for contour in &seen.contours {
-            let end_on = matches!(contour.curve2, ImageCurve::Point { .. });
+            let end_on = matches!(contour.image_curve, ImageCurve::Point { .. });
             for (index, piece) in contour.pieces.iter().enumerate() {
                 recount.pieces += 1;
-                let [lo, hi] = piece.t;
-                let ends = [lo, hi].map(|t| contour.curve3.point(t));
+                let [lo, hi] = piece.range;
+                let ends = [lo, hi].map(|t| contour.space_curve.point(t));
                 let open = piece.start.is_some() || piece.end.is_some();
                 let mut wrong = None;
                 for part in SAMPLES {
-                    let place = contour.curve3.point(lo + part * (hi - lo));
+                    let place = contour.space_curve.point(lo + part * (hi - lo));
                     // Where a piece ends in the image, another contour is close.
                     let (towards, _) = sight(&place);
                     let lateral = ends.map(|e| (e - place).cross(&towards).norm());
@@ -137,23 +137,30 @@ impl Recount {
                     match counted {
                         // Seen end-on, it has no two sides. All neighbouring rays may miss
                         // something that covers a narrow angle around it.
-                        _ if end_on && counted != piece.qi => recount.ambiguous += 1,
-                        _ if counted == piece.qi && piece.visible == (counted == 0) => {
+                        _ if end_on && counted != piece.quantitative_invisibility => {
+                            recount.ambiguous += 1
+                        }
+                        _ if counted == piece.quantitative_invisibility
+                            && piece.visible == (counted == 0) =>
+                        {
                             recount.agreed += 1;
                         }
-                        _ if folds && piece.qi == counted + 1 && !piece.visible => {
+                        _ if folds
+                            && piece.quantitative_invisibility == counted + 1
+                            && !piece.visible =>
+                        {
                             recount.ambiguous += 1;
                         }
                         // The count depends on the distance of the rays.
                         _ if !holds(&place, counted) => recount.ambiguous += 1,
                         _ => {
                             wrong = Some(WrongPiece {
-                                t: piece.t,
+                                range: piece.range,
                                 contour: contour.id,
                                 kind: contour.kind,
                                 piece: index,
                                 place: place.into(),
-                                given: piece.qi,
+                                given: piece.quantitative_invisibility,
                                 counted,
                             });
                         }
@@ -175,14 +182,14 @@ fn closer(clearance: &Clearance) -> Vec<Clearance> {
 
 /// The direction from a point to the eye, and the distance to the eye or the near plane.
 fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
-    let (towards, length) = projection.towards_eye(p);
+    let eye = projection.towards_eye(p);
     let depth = projection.depth(p);
     let seen = depth - projection.near;
     let reach = match projection.sight {
-        ViewRay::Eye(_) => length * (seen / depth),
+        ViewRay::Eye(_) => eye.distance * (seen / depth),
         ViewRay::Direction(_) => seen,
     };
-    (towards, reach)
+    (eye.direction, reach)
 }
 
 /// The number of wrong pieces that are reported individually.
@@ -211,7 +218,7 @@ impl fmt::Display for Recount {
             write!(
                 f,
                 "; contour {} ({:?}) piece {} over {:?}: {} for {} at ({x:.6}, {y:.6}, {z:.6})",
-                w.contour, w.kind, w.piece, w.t, w.given, w.counted
+                w.contour, w.kind, w.piece, w.range, w.given, w.counted
             )?;
         }
         Ok(())

@@ -11,7 +11,7 @@ use nalgebra::{Point2, Vector2};
 use premio_csg::ray_casting::{Ray, RayOracle};
 use premio_drawing::Drawing;
 use premio_kernel::number::predicates::ROUNDING;
-use premio_visibility::camera::projection::{Projection, ViewRay};
+use premio_visibility::camera::projection::{LineOfSight, Projection, ViewRay};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -72,7 +72,7 @@ pub struct Tolerance {
 impl Shadow<'_> {
     /// Whether the line of sight of a drawing's point hits material thicker than `least`.
     fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
-        let (origin, direction) = self.projection.line_of_sight_y_up(p);
+        let LineOfSight { origin, direction } = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
         let near = match self.projection.sight {
             ViewRay::Eye(_) => self.projection.near / direction.dot(&self.projection.axis()),

@@ -74,9 +74,10 @@ impl Window {
 
     /// The image position of a point of a drawing, whose y points up.
     pub fn of_drawing(&self, projection: &Projection, p: &Point2<f64>) -> [f64; 2] {
-        let (origin, into) = projection.line_of_sight_y_up(p);
+        let sight = projection.line_of_sight_y_up(p);
         // Far enough from the eye that its coordinates cost no digits.
-        self.image(&(origin + into * self.depth)).at
+        self.image(&(sight.origin + sight.direction * self.depth))
+            .at
     }
 
     /// The line of sight of an image point, with the depth as its parameter.

@@ -20,6 +20,24 @@ pub enum ViewRay {
     Direction(Vector3<f64>),
 }
 
+/// A line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineOfSight {
+    /// A point of it, nearer than all that is visible.
+    pub origin: Point3<f64>,
+    /// The unit direction into the scene.
+    pub direction: Vector3<f64>,
+}
+
+/// Where the eye is, as seen from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeDirection {
+    /// The unit vector towards the eye.
+    pub direction: Vector3<f64>,
+    /// The distance to the eye, infinite for an orthographic camera.
+    pub distance: f64,
+}
+
 /// A camera's projection.
 #[derive(Clone, Debug)]
 pub struct Projection {
@@ -193,7 +211,7 @@ impl Projection {
     }
 
     /// The line of sight through an image point with y up.
-    pub fn line_of_sight_y_up(&self, image: &Point2<f64>) -> (Point3<f64>, Vector3<f64>) {
+    pub fn line_of_sight_y_up(&self, image: &Point2<f64>) -> LineOfSight {
         self.line_of_sight(&self.flipped(*image))
     }
 
@@ -211,9 +229,8 @@ impl Projection {
         Point2::new(g.x, g.y)
     }
 
-    /// The line of sight through an image point: a point of it nearer than all that is visible, and
-    /// its unit direction into the scene.
-    pub fn line_of_sight(&self, image: &Point2<f64>) -> (Point3<f64>, Vector3<f64>) {
+    /// The line of sight through an image point.
+    pub fn line_of_sight(&self, image: &Point2<f64>) -> LineOfSight {
         // The inverse of an affine map is affine: only its first two rows are unknown.
         let m = &self.inverse;
         let h = [0, 1].map(|i| m[(i, 0)] * image.x + m[(i, 1)] * image.y + m[(i, 2)]);
@@ -224,24 +241,36 @@ impl Projection {
                 let into = [0, 1, 2].map(|i| across(i) + z[i]);
                 let [a, b, c] = into;
                 let length = (a * a + b * b + c * c).sqrt();
-                (eye, Vector3::new(a / length, b / length, c / length))
+                LineOfSight {
+                    origin: eye,
+                    direction: Vector3::new(a / length, b / length, c / length),
+                }
             }
             ViewRay::Direction(d) => {
                 let lateral = Vector3::new(across(0), across(1), across(2));
-                (self.origin + lateral * self.unit, d)
+                LineOfSight {
+                    origin: self.origin + lateral * self.unit,
+                    direction: d,
+                }
             }
         }
     }
 
-    /// The unit vector from a point towards the eye, with the distance to it.
-    pub fn towards_eye(&self, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+    /// The direction from a point towards the eye, and the distance to it.
+    pub fn towards_eye(&self, p: &Point3<f64>) -> EyeDirection {
         match self.sight {
             ViewRay::Eye(e) => {
                 let d = e - p;
                 let length = d.norm();
-                (d / length, length)
+                EyeDirection {
+                    direction: d / length,
+                    distance: length,
+                }
             }
-            ViewRay::Direction(d) => (-d, f64::INFINITY),
+            ViewRay::Direction(d) => EyeDirection {
+                direction: -d,
+                distance: f64::INFINITY,
+            },
         }
     }
 

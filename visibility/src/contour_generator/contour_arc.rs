@@ -54,6 +54,24 @@ pub struct Split {
     pub change: Change,
 }
 
+/// A junction on an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcJunction {
+    /// The parameter of the curve there.
+    pub t: f64,
+    /// The junction.
+    pub junction: u32,
+}
+
+/// A face along an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArcFace {
+    /// The face.
+    pub face: FaceId,
+    /// The sense in which its loop runs along the arc.
+    pub sense: Sense,
+}
+
 /// A connected piece of a contour beyond the near plane.
 #[derive(Debug)]
 pub struct ContourArc<'a> {
@@ -69,8 +87,8 @@ pub struct ContourArc<'a> {
     pub contour: u32,
     /// Its edge; none for a limb.
     pub edge: Option<EdgeId>,
-    /// The faces along it, each with the sense in which its loop runs.
-    pub faces: Vec<(FaceId, Sense)>,
+    /// The faces along it.
+    pub faces: Vec<ArcFace>,
     /// Whether it is a limb, of its only face.
     pub limb: bool,
     /// Its image.
@@ -86,11 +104,14 @@ pub struct ContourArc<'a> {
 }
 
 impl ContourArc<'_> {
-    /// The junctions known on it, with their parameters.
-    pub fn junctions(&self) -> impl Iterator<Item = (u32, f64)> {
+    /// The junctions known on it.
+    pub fn junctions(&self) -> impl Iterator<Item = ArcJunction> {
         let ends = self.ends.iter().zip(self.range);
-        let ends = ends.filter_map(|(id, t)| id.map(|id| (id, t)));
-        ends.chain(self.splits.iter().map(|split| (split.junction, split.t)))
+        let ends = ends.filter_map(|(id, t)| id.map(|junction| ArcJunction { t, junction }));
+        ends.chain(self.splits.iter().map(|split| ArcJunction {
+            t: split.t,
+            junction: split.junction,
+        }))
     }
 
     /// The approximate length of the image between the first and the last of some parameters.

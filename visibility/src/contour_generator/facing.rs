@@ -60,7 +60,7 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
         Sense::Against => -curve.tangent(t),
     };
     let normal = scene.brep.outward(face, &p);
-    let (v, _) = scene.projection.towards_eye(&p);
+    let v = scene.projection.towards_eye(&p).direction;
     let level = normal.dot(&v);
     // Only the tangential part of v counts: along a limb that is all of it.
     let across: Vector3<f64> = v - normal * level;

@@ -38,9 +38,11 @@ pub struct Junction {
     /// Its kind.
     pub kind: JunctionKind,
     /// Its position in the image, in the camera's unit.
-    pub point2: [f64; 2],
+    #[serde(rename = "point2")]
+    pub image_point: [f64; 2],
     /// Its position in space; at a T-junction, on the farther contour.
-    pub point3: [f64; 3],
+    #[serde(rename = "point3")]
+    pub space_point: [f64; 3],
     /// The contours there; at a T-junction the nearer one first.
     pub contours: Vec<u32>,
 }
@@ -94,8 +96,8 @@ impl<'p> Junctions<'p> {
         self.list.push(Junction {
             id,
             kind,
-            point2: self.projection.project(p).into(),
-            point3: (*p).into(),
+            image_point: self.projection.project(p).into(),
+            space_point: (*p).into(),
             contours: Vec::new(),
         });
         self.known.push(Known {
@@ -143,6 +145,6 @@ impl<'p> Junctions<'p> {
 
     /// The position of a junction in space.
     pub fn point(&self, id: u32) -> Point3<f64> {
-        Point3::from(self.list[id as usize].point3)
+        Point3::from(self.list[id as usize].space_point)
     }
 }

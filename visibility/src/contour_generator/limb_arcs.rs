@@ -1,5 +1,6 @@
 //! Limbs inside faces: the limbs of every surface, trimmed by the faces on it.
 
+use super::contour_arc::ArcJunction;
 use super::junctions::{JunctionKind, JunctionSupport, Junctions};
 use super::limb::{Limb, cusps, cutters, limbs, torus_limb_on};
 use crate::scene::Scene;
@@ -28,8 +29,8 @@ pub struct LimbArc {
     pub face: FaceId,
     /// The junctions at both ends.
     pub ends: [Option<u32>; 2],
-    /// Cusps and nodes: parameter and junction.
-    pub marks: Vec<(f64, u32)>,
+    /// Cusps and nodes.
+    pub marks: Vec<ArcJunction>,
 }
 
 /// All limbs of a part, and where they end on its edges.
@@ -37,8 +38,8 @@ pub struct LimbArc {
 pub struct LimbArcs {
     /// The limbs.
     pub arcs: Vec<LimbArc>,
-    /// By edge: parameter and junction of each limb's end on it.
-    pub on_edges: Vec<Vec<(f64, u32)>>,
+    /// By edge: the ends of limbs on it.
+    pub on_edges: Vec<Vec<ArcJunction>>,
 }
 
 /// Trims the limbs of every surface by the faces on it.
@@ -87,9 +88,9 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         }
         let surface = self.scene.brep.surface(face);
         let cutters = cutters(surface, &self.scene.projection.sight);
-        let mut ends: Vec<Vec<(f64, u32)>> = vec![Vec::new(); limbs.len()];
+        let mut ends: Vec<Vec<ArcJunction>> = vec![Vec::new(); limbs.len()];
         for edge in face_edges(self.scene, face) {
-            for t in self.intersects(surface, (limbs, &cutters), edge) {
+            for t in self.intersects(surface, limbs, &cutters, edge) {
                 let p = self.scene.brep.curve(edge).point(t);
                 let met = limbs_through(limbs, &p, SPACE_TOLERANCE * self.scene.resolution);
                 if met.is_empty() {
@@ -97,7 +98,8 @@ impl LimbTrimmer<'_, '_, '_, '_> {
                 }
                 let junction = self.end_on(edge, t, &p);
                 for which in met {
-                    ends[which].push((limbs[which].curve.parameter(&p), junction));
+                    let t = limbs[which].curve.parameter(&p);
+                    ends[which].push(ArcJunction { t, junction });
                 }
             }
         }
@@ -106,13 +108,13 @@ impl LimbTrimmer<'_, '_, '_, '_> {
             if let Some(from) = limb.from {
                 let p = limb.curve.point(from);
                 let near = SPACE_TOLERANCE * self.scene.resolution;
-                if ends.iter().all(|e| (e.0 - from).abs().is_beyond(near)) {
+                if ends.iter().all(|e| (e.t - from).abs().is_beyond(near)) {
                     let add = || {
                         self.junctions
                             .add(JunctionKind::Vertex, JunctionSupport::Alone, &p)
                     };
-                    let id = *apex.get_or_insert_with(add);
-                    ends.push((from, id));
+                    let junction = *apex.get_or_insert_with(add);
+                    ends.push(ArcJunction { t: from, junction });
                 }
             }
             self.limb(face, limb, ends);
@@ -124,7 +126,8 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     fn intersects(
         &self,
         surface: &Surface,
-        (limbs, cutters): (&[Limb], &[Surface]),
+        limbs: &[Limb],
+        cutters: &[Surface],
         edge: EdgeId,
     ) -> Vec<f64> {
         let mut found = Vec::new();
@@ -203,45 +206,48 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         let curve = brep.curve(edge);
         let known = self.found.on_edges[edge.index()]
             .iter()
-            .find(|m| (curve.point(m.0) - p).norm().is_within(near));
-        if let Some(&(_, id)) = known {
-            return id;
+            .find(|m| (curve.point(m.t) - p).norm().is_within(near));
+        if let Some(known) = known {
+            return known.junction;
         }
-        let id = self
+        let junction = self
             .junctions
             .add(JunctionKind::Limb, JunctionSupport::Edge(edge), p);
-        self.found.on_edges[edge.index()].push((t, id));
-        id
+        self.found.on_edges[edge.index()].push(ArcJunction { t, junction });
+        junction
     }
 
     /// Keeps the pieces of a limb between `ends` that lie in the face.
-    fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<(f64, u32)>) {
+    fn limb(&mut self, face: FaceId, limb: &Limb, mut ends: Vec<ArcJunction>) {
         let curve = &limb.curve;
-        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ends.sort_by(|a, b| a.t.total_cmp(&b.t));
         let near = SPACE_TOLERANCE * self.scene.resolution;
         let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
-        ends.dedup_by(|b, a| a.1 == b.1 || apart(a.0, b.0).is_within(near));
+        ends.dedup_by(|b, a| a.junction == b.junction || apart(a.t, b.t).is_within(near));
         let Some(period) = curve.period() else {
             for pair in ends.windows(2) {
                 self.stretch(
                     face,
                     limb,
-                    [pair[0].0, pair[1].0],
-                    [pair[0].1, pair[1].1].map(Some),
+                    [pair[0].t, pair[1].t],
+                    [pair[0].junction, pair[1].junction].map(Some),
                 );
             }
             return;
         };
-        let Some(&(first, id)) = ends.first() else {
+        let Some(&first) = ends.first() else {
             return self.stretch(face, limb, [0.0, period], [None, None]);
         };
-        ends.push((first + period, id));
+        ends.push(ArcJunction {
+            t: first.t + period,
+            ..first
+        });
         for pair in ends.windows(2) {
             self.stretch(
                 face,
                 limb,
-                [pair[0].0, pair[1].0],
-                [pair[0].1, pair[1].1].map(Some),
+                [pair[0].t, pair[1].t],
+                [pair[0].junction, pair[1].junction].map(Some),
             );
         }
     }
@@ -270,10 +276,10 @@ impl LimbTrimmer<'_, '_, '_, '_> {
             let sight = &self.scene.projection.sight;
             for t in cusps(s, sight, &arc.curve, range, self.scene.resolution) {
                 let p = arc.curve.point(t);
-                let id = self
+                let junction = self
                     .junctions
                     .add(JunctionKind::Cusp, JunctionSupport::Alone, &p);
-                arc.marks.push((t, id));
+                arc.marks.push(ArcJunction { t, junction });
             }
             for &t in &limb.nodes {
                 let t = arc
@@ -282,10 +288,10 @@ impl LimbTrimmer<'_, '_, '_, '_> {
                     .map_or(t, |p| lo + (t - lo).rem_euclid(p));
                 if t.lies_between(range) {
                     let p = arc.curve.point(t);
-                    let id =
+                    let junction =
                         self.junctions
                             .add(JunctionKind::SelfCrossing, JunctionSupport::Alone, &p);
-                    arc.marks.push((t, id));
+                    arc.marks.push(ArcJunction { t, junction });
                 }
             }
         }

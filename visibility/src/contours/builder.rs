@@ -2,7 +2,7 @@
 
 use crate::camera::ViewCamera;
 use crate::camera::projection::Projection;
-use crate::contour_generator::contour_arc::{Change, ContourArc, Split};
+use crate::contour_generator::contour_arc::{ArcFace, ArcJunction, Change, ContourArc, Split};
 use crate::contour_generator::facing::is_limb;
 use crate::contour_generator::junctions::{JunctionSupport, Junctions};
 use crate::contour_generator::limb_arcs::{LimbArcs, limb_arcs};
@@ -156,27 +156,42 @@ struct Source<'a> {
     ends: [Option<u32>; 2],
     contour: u32,
     edge: Option<EdgeId>,
-    faces: Vec<(FaceId, Sense)>,
+    faces: Vec<ArcFace>,
     limb: bool,
-    marks: Vec<(f64, u32)>,
+    marks: Vec<ArcJunction>,
+}
+
+/// A parameter at which an arc is cut, and the junction there.
+#[derive(Clone, Copy)]
+struct Stop {
+    t: f64,
+    junction: Option<u32>,
+}
+
+/// A part of a smooth edge.
+struct SmoothPart<'a> {
+    source: Source<'a>,
+    kind: ContourKind,
 }
 
 impl Source<'_> {
-    /// The parts between stops, which are parameters in order with their junctions; a closed arc
-    /// without any stays closed.
-    fn cut(&self, mut stops: Vec<(f64, Option<u32>)>) -> Vec<Self> {
+    /// The parts between stops, which are in the order of their parameters; a closed arc without
+    /// any stays closed.
+    fn cut(&self, mut stops: Vec<Stop>) -> Vec<Self> {
         let [lo, hi] = self.range;
         let closed = self.closed && stops.is_empty();
-        if let (true, Some(&(t, id))) = (self.closed, stops.first()) {
-            stops.push((t + (hi - lo), id));
+        if let (true, Some(&first)) = (self.closed, stops.first()) {
+            let t = first.t + (hi - lo);
+            stops.push(Stop { t, ..first });
         } else {
-            stops.insert(0, (lo, self.ends[0]));
-            stops.push((hi, self.ends[1]));
+            let end = |t: f64, junction: Option<u32>| Stop { t, junction };
+            stops.insert(0, end(lo, self.ends[0]));
+            stops.push(end(hi, self.ends[1]));
         }
-        let part = |pair: &[(f64, Option<u32>)]| Self {
-            range: [pair[0].0, pair[1].0],
+        let part = |pair: &[Stop]| Self {
+            range: [pair[0].t, pair[1].t],
             closed,
-            ends: [pair[0].1, pair[1].1],
+            ends: [pair[0].junction, pair[1].junction],
             ..self.clone()
         };
         stops.windows(2).map(part).collect()
@@ -201,7 +216,10 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 None => [None, None],
             };
             let uses = entity.coedges.iter();
-            let faces = uses.map(|&c| (topology.face_of(c), topology.coedge(c).sense));
+            let faces = uses.map(|&c| ArcFace {
+                face: topology.face_of(c),
+                sense: topology.coedge(c).sense,
+            });
             let whole = Source {
                 curve: brep.curve(edge),
                 range: brep.range(edge),
@@ -217,8 +235,8 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 self.edge(whole, ContourKind::Edge, false);
                 continue;
             }
-            for (part, kind) in self.smooth_parts(whole, edge) {
-                self.edge(part, kind, kind == ContourKind::Edge);
+            for SmoothPart { source, kind } in self.smooth_parts(whole, edge) {
+                self.edge(source, kind, kind == ContourKind::Edge);
             }
         }
     }
@@ -233,25 +251,33 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     }
 
     /// The parts of a smooth edge, cut where it begins or ceases to be the limb.
-    fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<(Source<'a>, ContourKind)> {
+    fn smooth_parts(&self, whole: Source<'a>, edge: EdgeId) -> Vec<SmoothPart<'a>> {
         let kind = |range: [f64; 2]| match is_limb(self.scene, edge, range) {
             true => ContourKind::Limb,
             false => ContourKind::Edge,
         };
-        let mut stops: Vec<(f64, Option<u32>)> = Vec::new();
+        let mut stops: Vec<Stop> = Vec::new();
         let [lo, hi] = whole.range;
-        for &(t, id) in &whole.marks {
-            let t = whole.curve.in_cycle(t, lo);
+        for mark in &whole.marks {
+            let t = whole.curve.in_cycle(mark.t, lo);
             if t.lies_between(whole.range) || whole.closed {
-                stops.push((t, Some(id)));
+                let junction = Some(mark.junction);
+                stops.push(Stop { t, junction });
             }
         }
-        stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        stops.sort_by(|a, b| a.t.total_cmp(&b.t));
         let parts = whole.cut(stops);
         let kinds: Vec<ContourKind> = parts.iter().map(|part| kind(part.range)).collect();
         match kinds.windows(2).all(|pair| pair[0] == pair[1]) {
-            true => vec![(whole, kinds.first().copied().unwrap_or(kind([lo, hi])))],
-            false => parts.into_iter().zip(kinds).collect(),
+            true => vec![SmoothPart {
+                source: whole,
+                kind: kinds.first().copied().unwrap_or(kind([lo, hi])),
+            }],
+            false => {
+                let parts = parts.into_iter().zip(kinds);
+                let part = |(source, kind)| SmoothPart { source, kind };
+                parts.map(part).collect()
+            }
         }
     }
 
@@ -264,7 +290,10 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                 ends: arc.ends,
                 contour: self.contours.len() as u32,
                 edge: None,
-                faces: vec![(arc.face, Sense::Along)],
+                faces: vec![ArcFace {
+                    face: arc.face,
+                    sense: Sense::Along,
+                }],
                 limb: true,
                 marks: arc.marks.clone(),
             };
@@ -285,9 +314,9 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     }
 
     fn contour(&self, source: &Source<'_>, seen: &Image, kind: ContourKind) -> Contour {
-        let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.0).collect();
+        let mut faces: Vec<FaceId> = source.faces.iter().map(|f| f.face).collect();
         if source.limb {
-            faces.push(source.faces[0].0);
+            faces.push(source.faces[0].face);
         }
         Contour {
             id: source.contour,
@@ -295,8 +324,8 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             smooth: false,
             faces,
             edge: source.edge,
-            curve3: source.curve.clone(),
-            curve2: image_curve(seen, source, self.scene.projection),
+            space_curve: source.curve.clone(),
+            image_curve: image_curve(seen, source, self.scene.projection),
             pieces: Vec::new(),
         }
     }
@@ -341,10 +370,11 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         let junctions = &mut *self.junctions;
         let stops = cuts.into_iter().map(|t| {
             let p = source.curve.point(t);
-            (
+            let junction = junctions.add(JunctionKind::NearPlane, JunctionSupport::Alone, &p);
+            Stop {
                 t,
-                Some(junctions.add(JunctionKind::NearPlane, JunctionSupport::Alone, &p)),
-            )
+                junction: Some(junction),
+            }
         });
         for part in source.cut(stops.collect()) {
             let middle = source.curve.point(0.5 * (part.range[0] + part.range[1]));
@@ -362,7 +392,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
         let (projection, resolution) = (self.scene.projection, self.scene.resolution);
         if let Image::General = seen {
             let brep = self.scene.brep;
-            let surfaces = source.faces.iter().map(|f| brep.surface(f.0));
+            let surfaces = source.faces.iter().map(|f| brep.surface(f.face));
             seen = Edgewise::new(
                 source.curve,
                 range,
@@ -396,7 +426,7 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             ends_at.iter().any(|end| (p - end).norm().is_within(near))
         };
         let mut splits: Vec<Split> = Vec::new();
-        for &(t, junction) in &source.marks {
+        for &ArcJunction { t, junction } in &source.marks {
             let t = within(t);
             if t.lies_between(range) || closed {
                 splits.push(Split {

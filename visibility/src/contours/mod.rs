@@ -64,10 +64,11 @@ pub struct Contour {
     /// The edge, of a boundary and of a limb along a smooth edge.
     pub edge: Option<EdgeId>,
     /// The curve in space.
-    #[serde(serialize_with = "json::curve")]
-    pub curve3: Curve,
+    #[serde(rename = "curve3", serialize_with = "json::curve")]
+    pub space_curve: Curve,
     /// The curve in the image.
-    pub curve2: ImageCurve,
+    #[serde(rename = "curve2")]
+    pub image_curve: ImageCurve,
     /// Its pieces, in order; none where all of it lies behind the near plane.
     pub pieces: Vec<ContourPiece>,
 }
@@ -105,9 +106,9 @@ impl Contours {
     pub fn sample(&mut self, n: usize) {
         for contour in &mut self.contours {
             for piece in &mut contour.pieces {
-                let [lo, hi] = piece.t;
+                let [lo, hi] = piece.range;
                 let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / n as f64);
-                let points = (0..n).map(|k| contour.curve3.point(at(k)).into());
+                let points = (0..n).map(|k| contour.space_curve.point(at(k)).into());
                 piece.samples = Some(points.collect());
             }
         }

@@ -144,7 +144,7 @@ pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, resolution
             let origin = projection.homogeneous(&c.origin);
             let direction = projection.homogeneous_vector(&c.direction);
             let middle = c.origin + c.direction * (0.5 * (range[0] + range[1]));
-            let (towards, _) = projection.towards_eye(&middle);
+            let towards = projection.towards_eye(&middle).direction;
             let width = towards.cross(&c.direction).norm() * (range[1] - range[0]);
             if width.is_at_most(resolution) {
                 return Image::Point;
@@ -176,12 +176,12 @@ fn conic_image(
     resolution: f64,
 ) -> Image {
     let map = map_of(frame, a, b, projection);
-    let (towards, away) = projection.towards_eye(&frame.origin);
-    let tilt = towards.dot(&frame.z).abs();
+    let eye = projection.towards_eye(&frame.origin);
+    let tilt = eye.direction.dot(&frame.z).abs();
     // The image is thinner than the resolution, or the plane is that near to the eye.
     let reach = match basis {
         Basis::Circular => a.max(b),
-        _ if away.is_finite() => away,
+        _ if eye.distance.is_finite() => eye.distance,
         _ => resolution / ROUNDING,
     };
     let edge_on = (tilt * reach).is_at_most(resolution);

@@ -91,12 +91,20 @@ struct Seen {
     corners: Vec<Corner>,
 }
 
+/// The coedges of a loop that meet at a vertex.
+#[derive(Clone, Copy, Debug)]
+struct VertexCorner {
+    vertex: VertexId,
+    arriving: CoedgeId,
+    leaving: CoedgeId,
+}
+
 /// The corrections of a view.
 #[derive(Debug)]
 pub struct Corrections<'s, 'a> {
     scene: &'s Scene<'a>,
     /// The pairs of coedges that come to a vertex and leave it, in the order of the vertices.
-    corners: Vec<(VertexId, [CoedgeId; 2])>,
+    corners: Vec<VertexCorner>,
     /// By vertex: its visible corners, once they were requested.
     seen: Vec<OnceCell<Seen>>,
 }
@@ -109,13 +117,17 @@ impl<'s, 'a> Corrections<'s, 'a> {
         let mut corners = Vec::with_capacity(topology.coedges.len());
         for ring in &topology.loops {
             let next = ring.coedges.iter().cycle().skip(1);
-            for (&to, &from) in ring.coedges.iter().zip(next) {
-                if let Some([_, at]) = topology.run(to) {
-                    corners.push((at, [to, from]));
+            for (&arriving, &leaving) in ring.coedges.iter().zip(next) {
+                if let Some([_, vertex]) = topology.run(arriving) {
+                    corners.push(VertexCorner {
+                        vertex,
+                        arriving,
+                        leaving,
+                    });
                 }
             }
         }
-        corners.sort_by_key(|(at, _)| at.index());
+        corners.sort_by_key(|corner| corner.vertex.index());
         Self {
             scene,
             corners,
@@ -150,8 +162,9 @@ impl<'s, 'a> Corrections<'s, 'a> {
     fn see(&self, vertex: VertexId) -> Seen {
         let topology = &self.scene.brep.topology;
         let p = self.scene.brep.point(vertex);
-        let (towards, _) = self.scene.projection.towards_eye(&p);
-        let corner = |&(_, [to, from]): &(VertexId, [CoedgeId; 2])| {
+        let towards = self.scene.projection.towards_eye(&p).direction;
+        let corner = |corner: &VertexCorner| {
+            let [to, from] = [corner.arriving, corner.leaving];
             let face = topology.face_of(from);
             let sides = [to, from].map(|c| topology.coedge(c).edge);
             let directions = || {
@@ -160,7 +173,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
             };
             self.corner(face, sides, &p, &towards, directions)
         };
-        let before = |id: usize| self.corners.partition_point(|(at, _)| at.index() < id);
+        let before = |id: usize| self.corners.partition_point(|c| c.vertex.index() < id);
         let here = &self.corners[before(vertex.index())..before(vertex.index() + 1)];
         Seen {
             towards,
@@ -239,7 +252,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
         if coedges.len() != 2 {
             return None;
         }
-        let (v, _) = self.scene.projection.towards_eye(&p);
+        let v = self.scene.projection.towards_eye(&p).direction;
         let effect = |&coedge: &CoedgeId| {
             let face = brep.topology.face_of(coedge);
             let out = along * brep.topology.coedge(coedge).sense.sign::<f64>();
@@ -262,12 +275,12 @@ impl<'s, 'a> Corrections<'s, 'a> {
     /// which the face is turned away lies behind the fold.
     fn fold(&self, face: FaceId, out: &Vector3<f64>, p: &Point3<f64>, end: &End<'_, '_>) -> Effect {
         let scene = self.scene;
-        let (v, _) = scene.projection.towards_eye(p);
+        let v = scene.projection.towards_eye(p).direction;
         let inward = scene.brep.outward(face, p).cross(out);
         let into = v.dot(&inward);
         let bend = self.bend(face, p, &v);
         let middle = end.arc.curve.point(end.middle);
-        let (w, _) = scene.projection.towards_eye(&middle);
+        let w = scene.projection.towards_eye(&middle).direction;
         let facing = scene.brep.outward(face, &middle).dot(&w);
         if into.is_short_of(-SIGNIFICANT) {
             return Effect::Clear;
@@ -301,19 +314,19 @@ impl<'s, 'a> Corrections<'s, 'a> {
     /// the cusp the third root lies in front of the limb on one side and behind it on the other. In
     /// front, it hides the limb where the line of sight leaves the material there.
     fn at_cusp(&self, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
-        let &(face, _) = end.arc.faces.first()?;
+        let face = end.arc.faces.first()?.face;
         let Surface::Torus(torus) = self.scene.brep.surface(face) else {
             return None;
         };
         let p = end.arc.curve.point(end.t);
-        let (v, _) = self.scene.projection.towards_eye(&p);
+        let v = self.scene.projection.towards_eye(&p).direction;
         // A fourth of the third coefficient of the torus's quartic along the line of sight.
         let rise = (p - torus.frame.origin).dot(&v);
         if !is_significant(rise / torus.major) {
             return None;
         }
         let middle = end.arc.curve.point(end.middle);
-        let (v, _) = self.scene.projection.towards_eye(&middle);
+        let v = self.scene.projection.towards_eye(&middle).direction;
         let bend = self.bend(face, &middle, &v);
         let leaves = self.scene.along(face) == rise.is_above_zero();
         match bend {
@@ -339,7 +352,7 @@ impl Corner {
     /// The effect of the face on a piece that leaves its corner.
     fn effect(&self, towards: &Vector3<f64>, end: &End<'_, '_>) -> Effect {
         let arc = end.arc;
-        if arc.limb && arc.faces.iter().any(|f| f.0 == self.face) {
+        if arc.limb && arc.faces.iter().any(|f| f.face == self.face) {
             return Effect::Clear;
         }
         let Some(facing) = self.facing else {

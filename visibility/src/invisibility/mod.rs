@@ -22,11 +22,13 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContourPiece {
     /// The range of the curve's parameter, increasing; it may pass the end of a period.
-    pub t: [f64; 2],
+    #[serde(rename = "t")]
+    pub range: [f64; 2],
     /// Whether no face occludes it.
     pub visible: bool,
     /// The number of faces turned towards the eye that lie in front of it.
-    pub qi: u32,
+    #[serde(rename = "qi")]
+    pub quantitative_invisibility: u32,
     /// The one of them nearest to the eye.
     pub occluder: Option<FaceId>,
     /// The junction at its start; none for a whole closed contour.
@@ -66,15 +68,15 @@ pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occ
         ambiguous.push(count);
     }
     // Contours that overlap are ambiguous everywhere, and the counts agree.
-    ambiguous.sort_by_key(|c| c.qi);
+    ambiguous.sort_by_key(|c| c.quantitative_invisibility);
     ambiguous.swap_remove(PLACES.len() / 2)
 }
 
 fn count_at(scene: &Scene<'_>, arc: &ContourArc<'_>, t: f64) -> Occluders {
     let p = &arc.curve.point(t);
-    let (v, _) = scene.projection.towards_eye(p);
+    let v = scene.projection.towards_eye(p).direction;
     let own = |face: FaceId| {
-        if !arc.faces.iter().any(|f| f.0 == face) {
+        if !arc.faces.iter().any(|f| f.face == face) {
             return OriginIncidence::No;
         }
         let surface = scene.brep.surface(face);
@@ -104,7 +106,7 @@ fn inward(
     v: &Vector3<f64>,
 ) -> Vec<Vector3<f64>> {
     let halved = arc.faces.chunks(2).map(|pair| {
-        let normals = pair.iter().map(|&(face, _)| scene.brep.outward(face, p));
+        let normals = pair.iter().map(|f| scene.brep.outward(f.face, p));
         let inward = -normals.sum::<Vector3<f64>>();
         inward - v * inward.dot(v)
     });
@@ -146,14 +148,27 @@ pub fn pieces(
 
 fn piece(span: &Span, count: &Occluders) -> ContourPiece {
     ContourPiece {
-        t: span.range,
-        visible: count.qi == 0,
-        qi: count.qi,
+        range: span.range,
+        visible: count.quantitative_invisibility == 0,
+        quantitative_invisibility: count.quantitative_invisibility,
         occluder: count.occluder(),
         start: span.ends[0],
         end: span.ends[1],
         samples: None,
     }
+}
+
+/// An arc through a junction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Through {
+    junction: u32,
+    arc: u32,
+}
+
+/// The faces that hide a span next to the junction at one of its ends.
+struct Local {
+    junction: u32,
+    hiding: Vec<FaceId>,
 }
 
 /// The propagation of quantitative invisibility through the connected parts of the contours.
@@ -165,8 +180,8 @@ struct Carrying<'s, 'a> {
     corrections: Corrections<'s, 'a>,
     /// By junction: the occluders of all contours there, without the faces through the junction.
     beyond: Vec<Option<Occluders>>,
-    /// The arcs through the junctions: junction and arc, in order.
-    through: Vec<(u32, u32)>,
+    /// The arcs through the junctions, in order.
+    through: Vec<Through>,
     /// By arc: the occluders of each span.
     counts: Vec<Vec<Option<Occluders>>>,
     /// The arcs that are connected to known spans.
@@ -182,10 +197,13 @@ impl<'s, 'a> Carrying<'s, 'a> {
         chains: &'s [Chain],
         junctions: &'s Junctions<'s>,
     ) -> Self {
-        let mut through: Vec<(u32, u32)> = Vec::with_capacity(2 * junctions.list.len());
+        let mut through: Vec<Through> = Vec::with_capacity(2 * junctions.list.len());
         for (i, chain) in chains.iter().enumerate() {
             let ids = chain.spans.iter().flat_map(|s| s.ends).flatten();
-            through.extend(ids.map(|id| (id, i as u32)));
+            through.extend(ids.map(|junction| Through {
+                junction,
+                arc: i as u32,
+            }));
         }
         through.sort_unstable();
         through.dedup();
@@ -264,7 +282,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
 
     /// The faces at a junction at an end of a span that hide it there, where it is unambiguous that
     /// these alone make the difference between the contours at the junction.
-    fn local(&self, i: usize, k: usize, which: usize) -> Option<(u32, Vec<FaceId>)> {
+    fn local(&self, i: usize, k: usize, which: usize) -> Option<Local> {
         let Span { range, ends, .. } = self.chains[i].spans[k];
         let junction = ends[which]?;
         if self.junctions.is_ambiguous(junction) {
@@ -276,14 +294,14 @@ impl<'s, 'a> Carrying<'s, 'a> {
             middle: 0.5 * (range[0] + range[1]),
         };
         let hiding = self.corrections.hiding(self.junctions, junction, &end)?;
-        Some((junction, hiding))
+        Some(Local { junction, hiding })
     }
 
     /// The occluders of a span at one of its ends, from those known at the junction there.
     fn enter(&self, i: usize, k: usize, which: usize) -> Option<Occluders> {
         let junction = self.chains[i].spans[k].ends[which]?;
         let beyond = self.beyond[junction as usize].as_ref()?;
-        let (_, hiding) = self.local(i, k, which)?;
+        let Local { hiding, .. } = self.local(i, k, which)?;
         Some(beyond.before(&hiding))
     }
 
@@ -292,7 +310,7 @@ impl<'s, 'a> Carrying<'s, 'a> {
         if !count.unambiguous {
             return;
         }
-        let Some((junction, hiding)) = self.local(i, k, which) else {
+        let Some(Local { junction, hiding }) = self.local(i, k, which) else {
             return;
         };
         let Some(beyond) = count.beyond(&hiding) else {
@@ -300,12 +318,14 @@ impl<'s, 'a> Carrying<'s, 'a> {
             return;
         };
         match &self.beyond[junction as usize] {
-            Some(known) => self.sound &= known.qi == beyond.qi,
+            Some(known) => {
+                self.sound &= known.quantitative_invisibility == beyond.quantitative_invisibility
+            }
             None => {
                 self.beyond[junction as usize] = Some(beyond);
-                let first = self.through.partition_point(|t| t.0 < junction);
-                let past = self.through.partition_point(|t| t.0 <= junction);
-                let others = self.through[first..past].iter().rev().map(|t| t.1);
+                let first = self.through.partition_point(|t| t.junction < junction);
+                let past = self.through.partition_point(|t| t.junction <= junction);
+                let others = self.through[first..past].iter().rev().map(|t| t.arc);
                 self.next.extend(others.filter(|&o| o != i as u32));
             }
         }
@@ -322,12 +342,14 @@ fn carry(
     before: Occluders,
     passing: &Passing,
 ) -> Option<Occluders> {
-    let qi = before.qi.checked_add_signed(passing.by)?;
+    let quantitative_invisibility = before
+        .quantitative_invisibility
+        .checked_add_signed(passing.by)?;
     let order = order_after(scene, p, before, passing)?;
     let known = order.len() as u32;
-    let sound = known <= qi && (known > 0 || qi == 0);
+    let sound = known <= quantitative_invisibility && (known > 0 || quantitative_invisibility == 0);
     sound.then_some(Occluders {
-        qi,
+        quantitative_invisibility,
         order,
         unambiguous: true,
     })

@@ -19,10 +19,17 @@ const FEW: usize = 192;
 /// A contour is divided into links of about the image's size over this.
 const LINKS: f64 = 24.0;
 
+/// Up to four parameters at which an image is parallel to x or y.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extremes {
+    parameters: [f64; 4],
+    count: usize,
+}
+
 /// The parameters at which the image of a conic is parallel to x or y, those of a closed one in the
 /// period that begins at `lo`.
-fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
-    let mut found = ([0.0; 4], 0);
+fn extremes(image: &Image, lo: f64) -> Extremes {
+    let mut found = Extremes::default();
     let Image::Conic { basis, map, .. } = image else {
         return found;
     };
@@ -35,8 +42,8 @@ fn extremes(image: &Image, lo: f64) -> ([f64; 4], usize) {
         let p = map.row(i).transpose();
         let flat = Image::turns_of(*basis, &p, &q);
         for t in flat.into_iter().flatten() {
-            found.0[found.1] = within(t);
-            found.1 += 1;
+            found.parameters[found.count] = within(t);
+            found.count += 1;
         }
     }
     found
@@ -53,11 +60,12 @@ fn links(
         return contour_arc.stretches.iter().for_each(|s| push(s.bounds));
     }
     let [lo, hi] = contour_arc.range;
-    let (turns, count) = extremes(&contour_arc.image, lo);
+    let extremes = extremes(&contour_arc.image, lo);
+    let turns = &extremes.parameters[..extremes.count];
     let point = |t: f64| flat_of(projection, &contour_arc.curve.point(t));
     let chain = |[from, to]: [f64; 2], ends: [[f64; 2]; 2]| {
         let mut b = ImageBox::EMPTY.with(ends[0]).with(ends[1]);
-        for &t in turns[..count].iter().filter(|t| t.lies_between([from, to])) {
+        for &t in turns.iter().filter(|t| t.lies_between([from, to])) {
             b = b.with(point(t));
         }
         for &t in contour_arc

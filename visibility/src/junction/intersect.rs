@@ -372,10 +372,12 @@ pub fn place_of(
     ahead: impl Fn(f64) -> Option<f64>,
 ) -> Option<f64> {
     let within = |t: &f64| t.lies_in([root.lo, root.hi]);
-    let shared = |id: u32| b.junctions().any(|other| other.0 == id);
-    let mut known = a.junctions().filter(|(id, t)| within(t) && shared(*id));
-    if let Some((_, t)) = known.next() {
-        return Some(t);
+    let shared = |id: u32| b.junctions().any(|other| other.junction == id);
+    let mut known = a
+        .junctions()
+        .filter(|at| within(&at.t) && shared(at.junction));
+    if let Some(at) = known.next() {
+        return Some(at.t);
     }
     if root.contact != RootKind::Touching {
         return Some(root.t);
@@ -416,7 +418,7 @@ impl Branch<'_> {
     /// How far `b` lies in front of the point of `a` there.
     fn ahead(&self, t: f64) -> Option<f64> {
         let p = self.a.curve.point(t);
-        let (v, _) = self.projection.towards_eye(&p);
+        let v = self.projection.towards_eye(&p).direction;
         let q = self.b.curve.point(self.parameter(t)?);
         Some((q - p).dot(&v))
     }

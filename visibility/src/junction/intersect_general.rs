@@ -53,7 +53,7 @@ pub fn general_pair<'x>(
     let mut common = Common::default();
     let mut both = |x: &'x MonotoneArc, y: &'x MonotoneArc| {
         if x.bounds.intersects(&y.bounds)
-            && let Some(graphs) = Graphs::new((a, x), (b, y), projection)
+            && let Some(graphs) = Graphs::new([a, b], [x, y], projection)
         {
             graphs.cross(resolution, &mut common);
         }
@@ -143,8 +143,8 @@ pub struct Gap {
 impl<'x> Graphs<'x> {
     /// None where one of them is a dot.
     fn new(
-        (a, x): (&'x ContourArc<'x>, &'x MonotoneArc),
-        (b, y): (&'x ContourArc<'x>, &'x MonotoneArc),
+        [a, b]: [&'x ContourArc<'x>; 2],
+        [x, y]: [&'x MonotoneArc; 2],
         projection: &'x Projection,
     ) -> Option<Self> {
         let courses = [x.course?, y.course?];
@@ -275,7 +275,7 @@ impl<'x> Graphs<'x> {
     /// How far the first curve lies in front of the point of the second with the same image.
     pub fn ahead(&self, s: f64) -> Option<f64> {
         let p = self.b.point(s);
-        let (v, _) = self.projection.towards_eye(&p);
+        let v = self.projection.towards_eye(&p).direction;
         Some((self.a.point(self.gap(s).t) - p).dot(&v))
     }
 

@@ -7,15 +7,19 @@
 //! The folded sheet of a limb lies towards -N, or towards N where the surface is hollow along the
 //! line of sight.
 
+mod arc_position;
 pub mod broad_phase;
 pub mod intersect;
 pub mod intersect_general;
 pub(crate) mod overlap;
 pub(crate) mod snap;
 
-use crate::contour_generator::contour_arc::{Change, ContourArc, Passing, Split};
+use crate::contour_generator::contour_arc::{
+    ArcFace, ArcJunction, Change, ContourArc, Passing, Split,
+};
 use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
 use crate::image_curve::{Image, flat_of};
+use crate::junction::arc_position::{ArcPosition, ArcSplit, CrossedArc, IndexedArc};
 use crate::junction::broad_phase::candidates;
 use crate::junction::intersect::{Overlap, cross, parameters_at};
 use crate::junction::snap::{Settled, nearest_turn, settle, split_at_touches};
@@ -30,7 +34,7 @@ use premio_kernel::number::predicates::{Compare, ROUNDING};
 /// and it is straight.
 fn passes_once(contour_arc: &ContourArc<'_>, id: u32) -> bool {
     matches!(contour_arc.image, Image::Line { .. })
-        && contour_arc.junctions().any(|(own, _)| own == id)
+        && contour_arc.junctions().any(|own| own.junction == id)
 }
 
 /// The effect of a contour on one that passes behind it.
@@ -47,8 +51,8 @@ struct Hidden {
 struct Search<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
-    /// (arc, split) found so far.
-    splits: Vec<(u32, Split)>,
+    /// The splits found so far.
+    splits: Vec<ArcSplit>,
     /// By arc: the image points at which overlapping arcs end and that were already processed.
     processed: Vec<Vec<[f64; 2]>>,
     /// The passages behind junctions of other arcs.
@@ -82,19 +86,20 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
     };
     for (i, j) in pairs {
         let (a, b) = (&contour_arcs[i as usize], &contour_arcs[j as usize]);
-        let mut found = |t: f64, s: f64| search.crossing((i, a, t), (j, b, s));
+        let (first, second) = (IndexedArc::new(i, a), IndexedArc::new(j, b));
+        let mut found = |t: f64, s: f64| search.crossing(first.at(t), second.at(s));
         let overlap = cross(a, b, scene.projection, scene.resolution, &mut found);
         search.mark_passed_ambiguous(a, b);
         search.mark_passed_ambiguous(b, a);
-        search.pass_behind(a, (j, b));
-        search.pass_behind(b, (i, a));
+        search.pass_behind(a, second);
+        search.pass_behind(b, first);
         if i != j {
-            search.turns((i, a), (j, b));
-            search.turns((j, b), (i, a));
+            search.turns(first, second);
+            search.turns(second, first);
         }
         if overlap == Overlap::Yes && i != j {
-            search.overlap((i, a), (j, b));
-            search.overlap((j, b), (i, a));
+            search.overlap(first, b);
+            search.overlap(second, a);
             search.mark_all_ambiguous(a);
             search.mark_all_ambiguous(b);
         }
@@ -102,15 +107,15 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
     // An image that turns back overlaps itself.
     for (i, a) in contour_arcs.iter().enumerate() {
         if !a.turns.is_empty() {
-            search.overlap((i as u32, a), (i as u32, a));
+            search.overlap(IndexedArc::new(i as u32, a), a);
         }
         if !a.turns.is_empty() || matches!(a.image, Image::Point) {
             search.mark_all_ambiguous(a);
         }
     }
     let Search { splits, behind, .. } = search;
-    for (contour_arc, split) in splits {
-        contour_arcs[contour_arc as usize].splits.push(split);
+    for ArcSplit { index, split } in splits {
+        contour_arcs[index as usize].splits.push(split);
     }
     for behind in behind {
         behind.cut(
@@ -134,7 +139,7 @@ impl Behind {
         let curve = contour_arc.curve;
         let p = curve.point(self.t);
         let here = |t: f64| (curve.point(t) - p).norm().is_within(near);
-        let is_cut = contour_arc.junctions().any(|(_, t)| here(t));
+        let is_cut = contour_arc.junctions().any(|own| here(own.t));
         for split in contour_arc.splits.iter_mut().filter(|split| here(split.t)) {
             split.change = Change::Correct;
         }
@@ -150,8 +155,6 @@ impl Behind {
         });
     }
 }
-
-type At<'x, 'a> = (u32, &'x ContourArc<'a>, f64);
 
 impl Search<'_, '_, '_, '_> {
     /// Settles a parameter on its arc. A point where the image turns back on itself counts as an
@@ -214,71 +217,76 @@ impl Search<'_, '_, '_, '_> {
     /// way. Between the root and the junction both images are straight within the resolution, so
     /// they coincide.
     fn at_shared(&self, a: &ContourArc<'_>, t: f64, b: &ContourArc<'_>, s: f64) -> bool {
-        a.junctions().any(|(id, from)| {
+        a.junctions().any(|own| {
             b.junctions()
-                .filter(|other| other.0 == id)
-                .any(|(_, other)| {
-                    self.straight(a, nearest_turn(a, from, t), t)
-                        && self.straight(b, nearest_turn(b, other, s), s)
+                .filter(|other| other.junction == own.junction)
+                .any(|other| {
+                    self.straight(a, nearest_turn(a, own.t, t), t)
+                        && self.straight(b, nearest_turn(b, other.t, s), s)
                 })
         })
     }
 
-    fn crossing(&mut self, (i, a, t): At<'_, '_>, (j, b, s): At<'_, '_>) {
+    fn crossing(&mut self, first: ArcPosition<'_, '_>, second: ArcPosition<'_, '_>) {
+        let (a, b) = (first.arc, second.arc);
         let near = IMAGE_TOLERANCE * self.scene.resolution;
         if a.junctions()
-            .any(|(id, _)| passes_once(a, id) && passes_once(b, id))
+            .any(|own| passes_once(a, own.junction) && passes_once(b, own.junction))
         {
             return;
         }
-        let Some(t) = self.settle(a, t) else { return };
-        let Some(s) = self.settle(b, s) else { return };
+        let Some(t) = self.settle(a, first.t) else {
+            return;
+        };
+        let Some(s) = self.settle(b, second.t) else {
+            return;
+        };
         if self.at_shared(a, t.t, b, s.t) {
             return;
         }
         let (p, q) = (a.curve.point(t.t), b.curve.point(s.t));
-        let (v, _) = self.scene.projection.towards_eye(&p);
+        let v = self.scene.projection.towards_eye(&p).direction;
         let ahead = (q - p).dot(&v);
         if ahead.is_within(2.0 * near) {
             self.mark_ambiguous(a, t);
             self.mark_ambiguous(b, s);
             if !t.at_end && !s.at_end {
-                self.meeting([(i, a, t.t), (j, b, s.t)], &p);
+                self.meeting([first.moved_to(t.t), second.moved_to(s.t)], &p);
             }
             return;
         }
+        let (first, second) = (first.crossed(t, p), second.crossed(s, q));
         if ahead.is_above_zero() {
-            self.junction((j, b, s, q), (i, a, t, p), &v);
+            self.junction(second, first, &v);
         } else {
-            self.junction((i, a, t, p), (j, b, s, q), &v);
+            self.junction(first, second, &v);
         }
     }
 
     /// Contours of faces that touch intersect in space. The front one may change there, and neither
     /// contour determines what hides them.
-    fn meeting(&mut self, both: [At<'_, '_>; 2], p: &Point3<f64>) {
+    fn meeting(&mut self, both: [ArcPosition<'_, '_>; 2], p: &Point3<f64>) {
         let junction = self
             .junctions
             .add(JunctionKind::T, JunctionSupport::Alone, p);
-        self.junctions.list[junction as usize].contours = both
-            .iter()
-            .map(|(_, contour_arc, _)| contour_arc.contour)
-            .collect();
+        self.junctions.list[junction as usize].contours =
+            both.iter().map(|position| position.arc.contour).collect();
         self.junctions.mark_ambiguous(junction);
         let change = Change::Correct;
-        self.splits.extend(both.map(|(i, _, t)| {
-            let split = Split {
-                t,
+        self.splits.extend(both.map(|position| ArcSplit {
+            index: position.index,
+            split: Split {
+                t: position.t,
                 junction,
                 change,
-            };
-            (i, split)
+            },
         }));
     }
 
     /// Handles turning points of an arc's image that touch another contour without a crossing of
     /// the images.
-    fn turns(&mut self, (i, a): (u32, &ContourArc<'_>), (j, b): (u32, &ContourArc<'_>)) {
+    fn turns(&mut self, first: IndexedArc<'_, '_>, second: IndexedArc<'_, '_>) {
+        let (a, b) = (first.arc, second.arc);
         let near = IMAGE_TOLERANCE * self.scene.resolution;
         for &t in &a.turns {
             let p = a.curve.point(t);
@@ -286,7 +294,7 @@ impl Search<'_, '_, '_, '_> {
             parameters_at(b, &p, self.scene, &mut |s| met.push(s));
             for s in met {
                 if self.apart(&p, &b.curve.point(s)).is_at_most(near) {
-                    self.crossing((i, a, t), (j, b, s));
+                    self.crossing(first.at(t), second.at(s));
                 }
             }
         }
@@ -314,13 +322,13 @@ impl Search<'_, '_, '_, '_> {
     /// touches there.
     fn mark_passed_ambiguous(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
-        for (id, t) in far.junctions() {
+        for ArcJunction { junction: id, t } in far.junctions() {
             let known = passes_once(near, id) || self.junctions.is_ambiguous(id);
             if known || !near.hull.contains(self.junctions.image(id)) {
                 continue;
             }
             let p = far.curve.point(t);
-            let (v, _) = self.scene.projection.towards_eye(&p);
+            let v = self.scene.projection.towards_eye(&p).direction;
             let mut passed = false;
             parameters_at(near, &p, self.scene, &mut |s| {
                 let q = near.curve.point(s);
@@ -335,46 +343,50 @@ impl Search<'_, '_, '_, '_> {
 
     /// Records where `far` passes behind the junctions of `near` in the image. Contours that only
     /// touch it there end there or become hidden, so it may pass between their surfaces.
-    fn pass_behind(&mut self, near: &ContourArc<'_>, (contour_arc, far): (u32, &ContourArc<'_>)) {
-        for (id, s) in near.junctions() {
-            if !far.hull.contains(self.junctions.image(id)) || passes_once(far, id) {
+    fn pass_behind(&mut self, near: &ContourArc<'_>, far: IndexedArc<'_, '_>) {
+        for own in near.junctions() {
+            let image = self.junctions.image(own.junction);
+            if !far.arc.hull.contains(image) || passes_once(far.arc, own.junction) {
                 continue;
             }
-            let q = near.curve.point(s);
+            let q = near.curve.point(own.t);
             let mut behind = std::mem::take(&mut self.behind);
-            parameters_at(far, &q, self.scene, &mut |t| {
-                behind.extend(self.behind_at(near, (id, &q), (contour_arc, far, t)));
+            parameters_at(far.arc, &q, self.scene, &mut |t| {
+                behind.extend(self.behind_at(near, own.junction, &q, far.at(t)));
             });
             self.behind = behind;
         }
     }
 
-    /// The passage behind one junction, at a point of `near` and a parameter of `far`.
+    /// The passage behind one junction of `near` with the position `q`, at a position on a farther
+    /// arc.
     fn behind_at(
         &self,
         near: &ContourArc<'_>,
-        (id, q): (u32, &Point3<f64>),
-        (contour_arc, far, t): At<'_, '_>,
+        junction: u32,
+        q: &Point3<f64>,
+        position: ArcPosition<'_, '_>,
     ) -> Option<Behind> {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
-        let Settled { t, at_end: false } = self.settle(far, t)? else {
+        let far = position.arc;
+        let Settled { t, at_end: false } = self.settle(far, position.t)? else {
             return None;
         };
         let p = far.curve.point(t);
-        let (v, _) = self.scene.projection.towards_eye(&p);
+        let v = self.scene.projection.towards_eye(&p).direction;
         let ahead = (q - p).dot(&v);
         if ahead.is_at_most(margin) || self.apart(&p, q).is_beyond(margin) {
             return None;
         }
         // A cusp's own contour overlaps itself in the image over a long way.
-        let own = |(other, from): (u32, f64)| {
-            other == id && self.straight(far, nearest_turn(far, from, t), t)
+        let own = |other: ArcJunction| {
+            other.junction == junction && self.straight(far, nearest_turn(far, other.t, t), t)
         };
         if far.junctions().any(own) || self.is_turned_away(near, q, &v) {
             return None;
         }
         Some(Behind {
-            contour_arc,
+            contour_arc: position.index,
             t,
             contours: [near.contour, far.contour],
         })
@@ -389,7 +401,7 @@ impl Search<'_, '_, '_, '_> {
         v: &Vector3<f64>,
     ) -> bool {
         let t = contour_arc.curve.tangent(contour_arc.curve.parameter(q));
-        let hides = |&(face, sense): &(FaceId, Sense)| {
+        let hides = |&ArcFace { face, sense }: &ArcFace| {
             let side = self.image_side(contour_arc, face, sense, &t, q, v);
             !side.is_some_and(|side| side.is_exactly(0.0))
         };
@@ -398,18 +410,20 @@ impl Search<'_, '_, '_, '_> {
 
     /// Marks all junctions of an arc as ambiguous, because another contour overlaps it.
     fn mark_all_ambiguous(&mut self, contour_arc: &ContourArc<'_>) {
-        for (id, _) in contour_arc.junctions() {
-            self.junctions.mark_ambiguous(id);
+        for own in contour_arc.junctions() {
+            self.junctions.mark_ambiguous(own.junction);
         }
     }
 
     /// Splits the farther arc at a T-junction.
     fn junction(
         &mut self,
-        (_, near, s, q): (u32, &ContourArc<'_>, Settled, Point3<f64>),
-        (i, far, t, p): (u32, &ContourArc<'_>, Settled, Point3<f64>),
+        nearer: CrossedArc<'_, '_>,
+        farther: CrossedArc<'_, '_>,
         v: &Vector3<f64>,
     ) {
+        let (near, s, q) = (nearer.arc, nearer.at, nearer.point);
+        let (far, t, p) = (farther.arc, farther.at, farther.point);
         if t.at_end {
             return self.mark_ambiguous(far, t);
         }
@@ -447,7 +461,10 @@ impl Search<'_, '_, '_, '_> {
             junction: id,
             change,
         };
-        self.splits.push((i, split));
+        self.splits.push(ArcSplit {
+            index: farther.index,
+            split,
+        });
     }
 
     /// The faces that begin and cease to hide what passes behind `near` at `q` in the direction
@@ -467,7 +484,7 @@ impl Search<'_, '_, '_, '_> {
             return None;
         }
         let (mut entered, mut left) = (None, None);
-        for &(face, sense) in &near.faces {
+        for &ArcFace { face, sense } in &near.faces {
             let side = self.image_side(near, face, sense, &t, q, v)?;
             let slot = match side * turn {
                 x if x.is_above_zero() => &mut entered,
@@ -523,8 +540,8 @@ impl Search<'_, '_, '_, '_> {
         }
     }
 
-    /// Splits `a` where `b`, which overlaps it in the image, begins and ends.
-    fn overlap(&mut self, (i, a): (u32, &ContourArc<'_>), (_, b): (u32, &ContourArc<'_>)) {
+    /// Splits an arc where `b`, which overlaps it in the image, begins and ends.
+    fn overlap(&mut self, IndexedArc { index, arc: a }: IndexedArc<'_, '_>, b: &ContourArc<'_>) {
         if b.closed && b.turns.is_empty() {
             return;
         }
@@ -532,7 +549,7 @@ impl Search<'_, '_, '_, '_> {
             let q = b.curve.point(s);
             // In a symmetric view many ends coincide.
             let h = self.scene.projection.homogeneous(&q);
-            let processed = &mut self.processed[i as usize];
+            let processed = &mut self.processed[index as usize];
             let at = [h.x / h.z, h.y / h.z];
             let near = self.scene.resolution * h.z.recip();
             if processed
@@ -567,7 +584,7 @@ impl Search<'_, '_, '_, '_> {
                     junction: id,
                     change: Change::Correct,
                 };
-                self.splits.push((i, split));
+                self.splits.push(ArcSplit { index, split });
             }
         }
     }

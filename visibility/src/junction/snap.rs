@@ -65,7 +65,10 @@ pub fn split_at_touches(
     for (touch, place) in topology.touches.iter().zip(&geometry.touches) {
         let within = |contour_arc: &ContourArc<'_>| match contour_arc.edge {
             Some(edge) => touch.edges.contains(&edge),
-            None => contour_arc.faces.iter().any(|f| touch.faces.contains(&f.0)),
+            None => contour_arc
+                .faces
+                .iter()
+                .any(|f| touch.faces.contains(&f.face)),
         };
         let meeting = |contour_arc: &ContourArc<'_>| {
             let at = settle(contour_arc, contour_arc.curve.parameter(place), near)?;

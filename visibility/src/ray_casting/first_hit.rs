@@ -4,12 +4,23 @@
 //! Only the crossings that decide are located in their faces, because intersecting a surface costs
 //! less than locating a point in a face.
 
+use crate::camera::projection::LineOfSight;
+use crate::ray_casting::intersections::LineHit;
 use crate::ray_casting::{OriginIncidence, SightLine};
 use crate::scene::Scene;
 use nalgebra::{Point2, Point3};
 use premio_kernel::brep::locate::PointLocation;
 use premio_kernel::brep::topology::FaceId;
 use premio_kernel::number::predicates::Compare;
+
+/// The point of the part that is visible at an image point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// The face nearest to the eye.
+    pub face: FaceId,
+    /// The point of it.
+    pub point: Point3<f64>,
+}
 
 /// Where a line of sight crosses the surface of a face.
 #[derive(Clone, Copy, Debug)]
@@ -20,9 +31,12 @@ struct Crossing {
 }
 
 impl Scene<'_> {
-    /// The face that is visible at an image point, and the point of it.
-    pub fn nearest(&self, image: &Point2<f64>) -> Option<(FaceId, Point3<f64>)> {
-        let (eye, into) = self.projection.line_of_sight(image);
+    /// The point of the part that is visible at an image point.
+    pub fn nearest(&self, image: &Point2<f64>) -> Option<FirstHit> {
+        let LineOfSight {
+            origin: eye,
+            direction: into,
+        } = self.projection.line_of_sight(image);
         let part = self.bounds();
         let beyond = (part.centre() - eye).dot(&into) + part.diagonal();
         if !beyond.is_above_zero() {
@@ -35,7 +49,10 @@ impl Scene<'_> {
         crossings.iter().find_map(|crossing| {
             let p = ray.origin + ray.towards * crossing.at;
             let seen = self.locator.place(crossing.face, &p) != PointLocation::Outside;
-            seen.then_some((crossing.face, p))
+            seen.then_some(FirstHit {
+                face: crossing.face,
+                point: p,
+            })
         })
     }
 
@@ -62,8 +79,8 @@ impl Scene<'_> {
         for face in self.passed(ray) {
             let own = own(face);
             let least = self.least(own);
-            let found = self.meetings(ray, self.brep.surface(face), own);
-            for &(at, touches) in &found.at[..found.count] {
+            let found = self.line_hits(ray, self.brep.surface(face), own);
+            for &LineHit { at, touches } in found.as_slice() {
                 if at.is_beyond(least) && at.is_short_of(ray.length) {
                     crossings.push(Crossing { at, touches, face });
                 }

@@ -11,18 +11,31 @@ use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use premio_kernel::number::roots::{RootKind, Roots, isolate};
 
-/// Up to four intersections of a line and a surface: the distance, and whether the line only
-/// touches.
+/// An intersection of a line and a surface.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Meetings {
-    pub(crate) at: [(f64, bool); 4],
-    pub(crate) count: usize,
+pub(crate) struct LineHit {
+    /// The distance along the line.
+    pub(crate) at: f64,
+    /// Whether the line only touches the surface.
+    pub(crate) touches: bool,
 }
 
-impl Meetings {
-    fn push(&mut self, s: f64, touch: bool) {
-        if s.is_finite() && self.count < 4 {
-            self.at[self.count] = (s, touch);
+/// Up to four intersections of a line and a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LineHits {
+    all: [LineHit; 4],
+    count: usize,
+}
+
+impl LineHits {
+    /// The intersections.
+    pub(crate) fn as_slice(&self) -> &[LineHit] {
+        &self.all[..self.count]
+    }
+
+    fn push(&mut self, at: f64, touches: bool) {
+        if at.is_finite() && self.count < 4 {
+            self.all[self.count] = LineHit { at, touches };
             self.count += 1;
         }
     }
@@ -31,13 +44,13 @@ impl Meetings {
 impl Scene<'_> {
     /// The intersections of a line of sight with the surface of a face, without the root at the
     /// origin that `own` states.
-    pub(crate) fn meetings(
+    pub(crate) fn line_hits(
         &self,
         ray: &SightLine,
         surface: &Surface,
         own: OriginIncidence,
-    ) -> Meetings {
-        let mut found = Meetings::default();
+    ) -> LineHits {
+        let mut found = LineHits::default();
         let f = surface.frame();
         let q = f.coordinates(&ray.origin);
         let w = f.components(&ray.towards);
@@ -69,11 +82,11 @@ impl Scene<'_> {
                 let rho = q.x.hypot(q.y);
                 let c = (s.cos * rho - s.sin * q.z) * (s.cos * rho + s.sin * q.z);
                 let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
-                let mut both = Meetings::default();
+                let mut both = LineHits::default();
                 self.quadric([a, b, c], own, gradient, &mut both);
-                for &(t, touch) in &both.at[..both.count] {
-                    if (q.z + t * w.z).reaches(0.0) {
-                        found.push(t, touch);
+                for hit in both.as_slice() {
+                    if (q.z + hit.at * w.z).reaches(0.0) {
+                        found.push(hit.at, hit.touches);
                     }
                 }
             }
@@ -93,7 +106,7 @@ impl Scene<'_> {
         [a, b, c]: [f64; 3],
         own: OriginIncidence,
         gradient: impl Fn(f64) -> f64,
-        found: &mut Meetings,
+        found: &mut LineHits,
     ) {
         // A line along a ruling stays on the surface, or never intersects it.
         let flat = a.is_within(ROUNDING);
@@ -132,7 +145,7 @@ impl Scene<'_> {
         w: &Vector3<f64>,
         own: OriginIncidence,
         length: f64,
-        found: &mut Meetings,
+        found: &mut LineHits,
     ) {
         // The torus lies inside this sphere; the origin may be far away.
         let reach = s.major + s.minor + 4.0 * self.resolution;
@@ -198,7 +211,7 @@ impl Scene<'_> {
         f: &impl Fn(Interval) -> Jet<Interval>,
         lo: f64,
         hi: f64,
-        found: &mut Meetings,
+        found: &mut LineHits,
     ) -> Roots {
         let zeros = isolate(f, &[lo, hi], self.resolution);
         if let Roots::At { roots, .. } = &zeros {

@@ -8,7 +8,10 @@ pub(crate) mod first_hit;
 mod intersections;
 mod pierced;
 
-use crate::camera::projection::ViewRay;
+pub use first_hit::FirstHit;
+
+use crate::camera::projection::{EyeDirection, ViewRay};
+use crate::ray_casting::intersections::LineHit;
 use crate::scene::Scene;
 use nalgebra::{Point3, Vector3};
 use pierced::Pierced;
@@ -70,7 +73,7 @@ pub enum FaceQuery {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Occluders {
     /// The number of faces turned towards the eye.
-    pub qi: u32,
+    pub quantitative_invisibility: u32,
     /// The faces nearest to the eye, the nearest first, as far as their order is known; at least
     /// one if there are any.
     pub order: Vec<FaceId>,
@@ -86,7 +89,7 @@ impl Occluders {
 
     /// Whether the order of all faces is known.
     pub fn is_whole(&self) -> bool {
-        self.order.len() as u32 == self.qi
+        self.order.len() as u32 == self.quantitative_invisibility
     }
 
     /// The occluders with these faces added between all others and the point, the nearest to the
@@ -96,7 +99,7 @@ impl Occluders {
         if count.is_whole() {
             count.order.extend(faces);
         }
-        count.qi += faces.len() as u32;
+        count.quantitative_invisibility += faces.len() as u32;
         count
     }
 
@@ -104,8 +107,10 @@ impl Occluders {
     /// do not.
     pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
         let mut count = self.clone();
-        count.qi = count.qi.checked_sub(faces.len() as u32)?;
-        let kept = count.qi as usize;
+        count.quantitative_invisibility = count
+            .quantitative_invisibility
+            .checked_sub(faces.len() as u32)?;
+        let kept = count.quantitative_invisibility as usize;
         if self.is_whole() && self.order[kept..] != *faces {
             return None;
         }
@@ -147,7 +152,10 @@ fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
 impl Scene<'_> {
     /// The line of sight from a point.
     pub fn ray(&self, p: &Point3<f64>) -> SightLine {
-        let (towards, away) = self.projection.towards_eye(p);
+        let EyeDirection {
+            direction: towards,
+            distance: away,
+        } = self.projection.towards_eye(p);
         let near = self.projection.near;
         // Faces nearer than the near plane do not occlude.
         let rise = -towards.dot(&self.projection.axis());
@@ -209,9 +217,9 @@ impl Scene<'_> {
         report: &mut impl FnMut(SightHit),
     ) {
         let surface = self.brep.surface(face);
-        let meetings = self.meetings(ray, surface, own);
+        let hits = self.line_hits(ray, surface, own);
         let least = self.least(own);
-        for &(s, touch) in &meetings.at[..meetings.count] {
+        for &LineHit { at: s, touches } in hits.as_slice() {
             let p = ray.origin + ray.towards * s;
             if query == FaceQuery::Hiding && s.abs().is_short_of(least) {
                 // Where another face touches this one, this one may hide points next to the origin.
@@ -228,7 +236,7 @@ impl Scene<'_> {
             if s.is_at_most(least) || s.reaches(ray.length) {
                 continue;
             }
-            let front = touch || self.is_turned(face, &p, &ray.towards);
+            let front = touches || self.is_turned(face, &p, &ray.towards);
             let locator = self.locator.face(face);
             let place = match query {
                 FaceQuery::Hiding if !front && !locator.on_boundary(&p) => continue,
@@ -242,7 +250,7 @@ impl Scene<'_> {
                 at: s,
                 face,
                 front,
-                unambiguous: !touch && place == PointLocation::Inside,
+                unambiguous: !touches && place == PointLocation::Inside,
             });
         }
     }
@@ -257,10 +265,10 @@ impl Scene<'_> {
     /// `p`.
     pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
         let ray = self.ray(p);
-        let meetings = self.meetings(&ray, self.brep.surface(face), OriginIncidence::No);
-        for &(s, _) in &meetings.at[..meetings.count] {
-            if s.is_above_zero() {
-                report(s);
+        let hits = self.line_hits(&ray, self.brep.surface(face), OriginIncidence::No);
+        for hit in hits.as_slice() {
+            if hit.at.is_above_zero() {
+                report(hit.at);
             }
         }
     }
@@ -314,7 +322,7 @@ impl Scene<'_> {
         fronts.sort_by(|a, b| b.at.total_cmp(&a.at));
         if !unclear.iter().any(|hit| hit.front) {
             return Occluders {
-                qi: fronts.len() as u32,
+                quantitative_invisibility: fronts.len() as u32,
                 order: fronts.iter().map(|hit| hit.face).collect(),
                 unambiguous: unclear.is_empty(),
             };
@@ -330,7 +338,7 @@ impl Scene<'_> {
         // Intersections next to boundaries may be equally near, so only the first is certain.
         let first = most.iter().max_by(|a, b| a.at.total_cmp(&b.at));
         Occluders {
-            qi: most.len() as u32,
+            quantitative_invisibility: most.len() as u32,
             order: first.map(|layer| layer.face).into_iter().collect(),
             unambiguous: false,
         }
@@ -423,24 +431,24 @@ impl Scene<'_> {
     ) {
         let surface = self.brep.surface(hit.face);
         let lateral = ray.origin + ray.towards * hit.at + side * (ASIDE * self.resolution);
-        let (towards, _) = self.projection.towards_eye(&lateral);
+        let towards = self.projection.towards_eye(&lateral).direction;
         let back = 2.0 * hit.at;
         let parallel = SightLine {
             origin: lateral - towards * back,
             towards,
             length: f64::INFINITY,
         };
-        let elsewhere = self.meetings(ray, surface, own);
+        let elsewhere = self.line_hits(ray, surface, own);
         let through = (own != OriginIncidence::No).then_some(0.0);
         let known = |s: f64| {
-            let others = elsewhere.at[..elsewhere.count].iter().map(|m| m.0);
+            let others = elsewhere.as_slice().iter().map(|other| other.at);
             let away = (s - hit.at).abs();
             others
                 .chain(through)
                 .all(|other| other.is_exactly(hit.at) || (s - other).abs().is_beyond(away))
         };
-        let found = self.meetings(&parallel, surface, OriginIncidence::No);
-        for &(s, touch) in &found.at[..found.count] {
+        let found = self.line_hits(&parallel, surface, OriginIncidence::No);
+        for &LineHit { at: s, touches } in found.as_slice() {
             let at = s - back + hit.at;
             // Faces behind the point do not hide it.
             if at.is_at_most(0.0) || !known(at) {
@@ -448,7 +456,7 @@ impl Scene<'_> {
             }
             let p = parallel.origin + towards * s;
             if self.locator.place(hit.face, &p) != PointLocation::Outside {
-                let front = touch || self.is_turned(hit.face, &p, &towards);
+                let front = touches || self.is_turned(hit.face, &p, &towards);
                 report(at, front);
             }
         }

@@ -56,18 +56,14 @@ fn evidence(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> Sha
         .zip(&there)
         .map(|(a, b)| {
             // The point at the same share of the length, which is close enough along an edge.
-            let at = |k: usize| b.points[k * b.points.len() / a.points.len()].1.at;
+            let at = |k: usize| b.points[k * b.points.len() / a.points.len()].image.at;
             let weight = (2.0 + a.length / 24.0) / a.points.len() as f64;
-            let pulls = a
-                .points
-                .iter()
-                .enumerate()
-                .map(|(k, (point, image))| PointToLine {
-                    point: *point,
-                    target: at(k),
-                    normal: image.normal,
-                    weight,
-                });
+            let pulls = a.points.iter().enumerate().map(|(k, sample)| PointToLine {
+                point: sample.point,
+                target: at(k),
+                normal: sample.image.normal,
+                weight,
+            });
             (a.source, pulls.collect())
         })
         .collect();

@@ -58,9 +58,11 @@ impl Part {
         let size = self.evaluation.bounds.diagonal();
         let projection = Projection::new(&seen.camera, size);
         let window = Window::around(&projection, &self.evaluation.bounds);
-        let [lo, hi] = piece.t;
+        let [lo, hi] = piece.range;
         let at = |k: i32| {
-            let p = contour.curve3.point(lo + (hi - lo) * f64::from(k) / 64.0);
+            let p = contour
+                .space_curve
+                .point(lo + (hi - lo) * f64::from(k) / 64.0);
             window.image(&p).at
         };
         let step = |k: i32| {
@@ -145,7 +147,7 @@ fn a_visible_piece_that_is_said_to_be_hidden_is_missed() {
                     }
                     let mut wrong = seen.clone();
                     let piece = &mut wrong.contours[k].pieces[i];
-                    (piece.visible, piece.qi) = (false, 1);
+                    (piece.visible, piece.quantitative_invisibility) = (false, 1);
                     let found = part.outlines(&wrong);
                     let lacks = found.missing.iter().map(|m| m.lack);
                     assert!(
@@ -176,7 +178,7 @@ fn contours_on_one_another_are_told_apart_by_depth() {
     let part = Part::new("P = CYL(R=1, H=2)");
     let mut seen = part.contours(&part.view("along z"));
     assert!(part.outlines(&seen).missing.is_empty());
-    seen.contours.retain(|c| c.curve3.point(0.0).z < 1.0);
+    seen.contours.retain(|c| c.space_curve.point(0.0).z < 1.0);
     let missing = part.outlines(&seen).missing;
     assert!(!missing.is_empty() && missing.iter().all(|m| m.lack == Lack::Depth));
 }

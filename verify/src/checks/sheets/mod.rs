@@ -12,7 +12,7 @@ use super::images::Images;
 use super::strokes::{Strokes, point};
 use super::window::Window;
 use nalgebra::Point2;
-use premio_drawing::sheet::{self, Sheet, SheetError};
+use premio_drawing::sheet::{self, Sheet, SheetError, SheetView};
 use premio_drawing::{Drawing, Layer, Stroke, StrokeShape};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::unit::Unit;
@@ -115,7 +115,13 @@ impl SheetReport {
             scale: None,
             angle: sheet::Angle::First,
         };
-        let sheet = match Sheet::new(vec![(None, drawing)], how) {
+        let sheet = match Sheet::new(
+            vec![SheetView {
+                view: None,
+                drawing,
+            }],
+            how,
+        ) {
             Ok(sheet) => sheet,
             // Nothing is drawn.
             Err(SheetError::Size { .. }) => return,
@@ -244,18 +250,18 @@ impl SheetReport {
         read: &[Stroke],
     ) {
         let smooth = read.iter().any(|s| s.layer == Layer::Smooth);
-        let drawn = seen
-            .contours
-            .iter()
-            .filter(|c| (smooth || !c.smooth) && !matches!(c.curve2, ImageCurve::Point { .. }));
+        let drawn = seen.contours.iter().filter(|c| {
+            (smooth || !c.smooth) && !matches!(c.image_curve, ImageCurve::Point { .. })
+        });
         let pieces: Vec<_> = drawn
             .flat_map(|c| c.pieces.iter().map(move |piece| (c, piece)))
             .collect();
         let mut undrawn = Vec::new();
         for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
-            let [lo, hi] = piece.t;
-            let at =
-                |part: f64| projection.project_y_up(&contour.curve3.point(lo + (hi - lo) * part));
+            let [lo, hi] = piece.range;
+            let at = |part: f64| {
+                projection.project_y_up(&contour.space_curve.point(lo + (hi - lo) * part))
+            };
             let suits = |s: &Stroke| s.visible || !piece.visible;
             let is_drawn = |p: &Point2<f64>| strokes.passing(p, tolerance).any(|(_, s)| suits(s));
             let missing: Vec<_> = ON_PIECES

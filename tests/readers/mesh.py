@@ -25,6 +25,10 @@ KNOWN = {
     "cylinder-a-hundredth-millionth-into-a-ring.glb": SLIVER,
     "cylinder-a-hundredth-millionth-into-a-ring.3mf": SLIVER,
     "ball-by-a-plate-1e9-wide.stl": SINGLE,
+    "cone-around-a-ball-with-a-lip-of-1e-9.stl": SLIVER,
+    "cone-around-a-ball-with-a-lip-of-1e-9.obj": SLIVER,
+    "cone-around-a-ball-with-a-lip-of-1e-9.glb": SLIVER,
+    "cone-around-a-ball-with-a-lip-of-1e-9.3mf": SLIVER,
     "bored-block-far-from-origin.stl": SINGLE,
 }
 # How far triangles are off, as a part of the size, where nothing is said.

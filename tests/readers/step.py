@@ -29,6 +29,7 @@ KNOWN = {
     "ring-under-a-block-turned-within-the-resolution": PARTED,
     "torus-lying-on-block": PARTED,
     "bored-block-far-from-origin": "1e9 from the origin, the reader turns the solid inside out",
+    "cone-around-a-ball-with-a-lip-of-1e-9": "refused: two edges of a face 1e-9 apart",
     "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
     "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",
     "pipe-bend-along-a-floor": "refused: a wall without thickness along an arc",

@@ -23,10 +23,10 @@ ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "tests" / "cases"
 SETUP = """material = "plastic"
 [camera]
-name = "only"
-eye = [90, -120, 80]
+eye = {eye}
+target = {target}
 [[light]]
-position = [40, -60, 200]
+position = {light}
 [sensor]
 focal = 16
 film = [8.8, 6.6]
@@ -67,6 +67,8 @@ class Run:
     name: str
     arguments: list[str]
     output: str | None = None
+    # Whether wrong arguments are a fault of this script.
+    must_be_read: bool = False
 
 
 def descriptions(folder: Path):
@@ -105,15 +107,36 @@ def runs_of(name: str, path: Path, folder: Path):
         yield Run(f"{name}: convert {suffix}", ["convert", file], suffix)
 
 
-def predictions_of(name: str, path: Path, folder: Path, number: int):
+def setup_of(premio: str, path: Path, folder: Path) -> str | None:
+    """A setup before a part, by its bounds; none of a part without a solid."""
+    done = subprocess.run([premio, "info", str(path), "--json"], capture_output=True, cwd=folder)
+    bounds = json.loads(done.stdout).get("bounds") if done.returncode == 0 else None
+    if not bounds or bounds["min"] == bounds["max"]:
+        return None
+    low, high = bounds["min"], bounds["max"]
+    centre = [(a + b) / 2 for a, b in zip(low, high)]
+    size = sum((b - a) ** 2 for a, b in zip(low, high)) ** 0.5
+    at = lambda direction: [c + size * d for c, d in zip(centre, direction)]
+    return SETUP.format(eye=at((1.1, -1.5, 1.0)), target=centre, light=at((0.7, -0.9, 2.6)))
+
+
+def predictions_of(premio: str, name: str, path: Path, folder: Path, number: int):
     """What is predicted of a description."""
-    setup, spheres = str(folder / "setup.toml"), str(folder / "spheres.toml")
-    yield Run(f"{name}: predict", ["predict", str(path), "--setup", setup, "--seed", "7"], "json")
-    yield Run(f"{name}: overlay", ["predict", str(path), "--setup", setup, "-o", os.devnull, "--overlay"], "svg")
-    yield Run(f"{name}: render", ["render", str(path), "--setup", setup], "png")
+    text = setup_of(premio, path, folder)
+    if text is None:
+        return
+    file, setup, spheres = str(path), f"setup-{number}.toml", "spheres.toml"
+    (folder / setup).write_text(text)
+    commands = {
+        "predict": (["predict", file, "--setup", setup], "json"),
+        "overlay": (["predict", file, "--setup", setup, "-o", os.devnull, "--overlay"], "svg"),
+        "render": (["render", file, "--setup", setup], "png"),
+    }
     if number % MODELLED == 0:
-        yield Run(f"{name}: model", ["model", str(path), "--setups", spheres], "model")
-        yield Run(f"{name}: advise", ["advise", str(path), "--setups", spheres, "--goal", "pose", "--json"])
+        commands["model"] = (["model", file, "--setups", spheres], "model")
+        commands["advise"] = (["advise", file, "--setups", spheres, "--goal", "pose", "--json"], None)
+    for command, (arguments, output) in commands.items():
+        yield Run(f"{name}: {command}", arguments, output, must_be_read=True)
 
 
 def matches(folder: Path):
@@ -130,17 +153,18 @@ def matches(folder: Path):
         (folder / camera).write_text(json.dumps({"K": matrix, "width": 640, "height": 480}))
         pictures = sorted(Path(images).glob(f"{set_name}/**/*.png"))[:4]
         for picture in pictures:
-            yield Run(f"{set_name}: {picture.name}", ["match", str(part), str(picture), "--camera", str(camera)])
-        yield Run(f"{set_name}: track", ["track", str(part), *map(str, pictures), "--camera", str(camera)])
+            arguments = ["match", str(part), str(picture), "--camera", str(camera)]
+            yield Run(f"{set_name}: {picture.name}", arguments, must_be_read=True)
+        arguments = ["track", str(part), *map(str, pictures), "--camera", str(camera)]
+        yield Run(f"{set_name}: track", arguments, must_be_read=True)
 
 
-def all_runs(folder: Path):
-    (folder / "setup.toml").write_text(SETUP)
+def all_runs(premio: str, folder: Path):
     (folder / "spheres.toml").write_text(SPHERES)
     for number, (name, path) in enumerate(descriptions(folder)):
         yield from runs_of(name, path, folder)
         if number % PREDICTED == 0:
-            yield from predictions_of(name, path, folder, number)
+            yield from predictions_of(premio, name, path, folder, number)
     yield from matches(folder)
 
 
@@ -155,6 +179,8 @@ def digest(premio: str, run: Run, folder: Path) -> str:
             arguments += [*option, str(Path(place) / f"out.{run.output}")]
         try:
             done = subprocess.run([premio, *arguments], capture_output=True, timeout=LIMIT_SECONDS, cwd=folder)
+            if run.must_be_read and done.returncode == 2:
+                sys.exit(f"{run.name}: {done.stderr.decode()}")
             sha.update(str(done.returncode).encode() + without_times(done.stdout))
         except subprocess.TimeoutExpired:
             sha.update(b"given up")
@@ -187,7 +213,7 @@ def main():
     options = parser.parse_args()
     premio = str(Path(options.premio).resolve())
     with tempfile.TemporaryDirectory() as folder:
-        runs = [run for run in all_runs(Path(folder)) if options.only in run.name]
+        runs = [run for run in all_runs(premio, Path(folder)) if options.only in run.name]
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             digests = list(pool.map(lambda run: digest(premio, run, Path(folder)), runs))
     found = {run.name: value for run, value in zip(runs, digests)}

@@ -159,7 +159,7 @@ impl Cutter<'_, '_, '_, '_> {
         };
         let alone = before.extent[0].is_exactly(before.extent[1]);
         let is_start = self.cuts.len() == 1;
-        if !self.are_one(before.extent[1], end.t) || (is_start && alone) {
+        if !self.are_one(end.t, before.extent[1]) || (is_start && alone) {
             return self.cuts.push(end);
         }
         self.mark_ambiguous([before, end]);
@@ -181,7 +181,7 @@ impl Cutter<'_, '_, '_, '_> {
             return;
         };
         let mut first = first;
-        if self.cuts.len() > 1 && self.are_one(last.extent[1], first.extent[0] + period) {
+        if self.cuts.len() > 1 && self.are_one(first.extent[0] + period, last.extent[1]) {
             self.mark_ambiguous([last, first]);
             self.cuts.pop();
             first.extent[0] = last.extent[0] - period;

@@ -82,14 +82,14 @@ fn the_scale_is_the_greatest_with_room() {
 /// A part that the optical axis does not pass through is still placed in the middle of the
 /// paper.
 #[test]
-fn a_view_beside_its_axis_has_the_paper_for_itself() {
-    let beside = Drawing {
+fn a_view_off_its_axis_has_the_paper_for_itself() {
+    let off_axis = Drawing {
         extent: [Point2::new(1000.0, 0.0), Point2::new(1100.0, 10.0)],
         ..drawing(0.0, 0.0)
     };
     let view = SheetView {
         view: None,
-        drawing: beside,
+        drawing: off_axis,
     };
     let sheet = Sheet::new(vec![view], options(Angle::First)).unwrap();
     assert_eq!(sheet.factor, 2.0);

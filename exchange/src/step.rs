@@ -7,6 +7,7 @@
 //! protocol with boundary representations has.
 
 mod clearance;
+mod overlap;
 mod part21;
 mod product;
 mod shape;

@@ -1,5 +1,6 @@
 //! Finds edges, faces and walls that are too thin for the tolerances of other kernels.
 
+use super::overlap::{Tolerances, overlapping_edges};
 use super::{StepError, clearance};
 use crate::two_manifold::{SeamedEdge, TwoManifold, short};
 use nalgebra::Point3;
@@ -17,6 +18,10 @@ const APART: f64 = 1.0 / 10_000_000.0;
 /// CASCADE's `Precision::Intersection`).
 const CROSSING: f64 = 1.0 / 100.0;
 
+/// The fraction of that distance up to which touching edges of a face may overlap (Open CASCADE
+/// classifies wires with about a tenth of `Precision::Intersection`).
+const OVERLAPPING: f64 = 1.0 / 1_000.0;
+
 /// A kind of thin entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thin {
@@ -26,6 +31,8 @@ pub enum Thin {
     Face,
     /// Two edges of a face are close to each other.
     Gap,
+    /// Two edges of a face touch and overlap.
+    Overlap,
     /// The two sides of a shell are close to each other.
     Shell,
 }
@@ -36,6 +43,7 @@ impl fmt::Display for Thin {
             Self::Edge => "an edge of length",
             Self::Face => "a face of width",
             Self::Gap => "two edges of a face at the distance",
+            Self::Overlap => "two edges of a face that touch and overlap by",
             Self::Shell => "a wall or gap of thickness",
         })
     }
@@ -47,7 +55,7 @@ pub(super) fn apart(unit: Unit) -> f64 {
 }
 
 /// Checks that every edge is longer and every face wider than that, and that edges of a face touch
-/// or are farther from each other.
+/// without an overlap or are farther from each other.
 pub(super) fn check(
     brep: &Brep,
     seamed: &TwoManifold<'_>,
@@ -57,6 +65,15 @@ pub(super) fn check(
     let crossing = least * CROSSING;
     if let Some(near) = clearance::near_edges(seamed, resolution, crossing) {
         return Err(thin(Thin::Gap, near.place, near.distance, crossing));
+    }
+    let tolerances = Tolerances {
+        resolution,
+        vertex: least,
+        crossing: least * OVERLAPPING,
+    };
+    if let Some(overlap) = overlapping_edges(brep, seamed, &tolerances) {
+        let most = tolerances.crossing;
+        return Err(thin(Thin::Overlap, overlap.place, overlap.distance, most));
     }
     let areas = FaceIntegrals::new(brep).areas(brep);
     let length = |edge: &SeamedEdge<'_>| short::length(&edge.curve, edge.range);

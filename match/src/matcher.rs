@@ -11,11 +11,13 @@ use crate::image::{ImageFeatures, chains};
 use crate::part::SoughtPart;
 use crate::part::detectability_prior::DetectabilityPrior;
 use crate::pose::refine::{PointToLine, Refined, refine};
+use crate::search::monitor::{SEARCH_STEPS, SearchMonitor, SearchStopped};
 use crate::search::{Solution, search};
 use crate::verification::axis_alignment::framed;
 use crate::verification::part_match::{FeaturePair, Found, PartMatch, SearchOptions, SearchResult};
 use crate::verification::residuals::SystematicOffset;
-use crate::verification::scoring::{fitted, odds, ratio, related, with_prior};
+use crate::verification::score_weights::WEIGHTS;
+use crate::verification::scoring::{ScoreMeasures, fitted, related, with_prior};
 use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::Isometry3;
 use rayon::prelude::*;
@@ -33,11 +35,37 @@ pub struct Matcher<'a> {
     pub camera: &'a Pinhole,
     /// The options of the search.
     pub options: &'a SearchOptions,
+    /// Receives the progress, and may stop the search.
+    pub monitor: &'a dyn SearchMonitor,
 }
 
 impl Matcher<'_> {
     /// Searches the whole image.
-    pub fn find(&self) -> SearchResult {
+    ///
+    /// # Errors
+    /// The monitor stopped the search.
+    pub fn find(&self) -> Result<SearchResult, SearchStopped> {
+        let Self { part, camera, .. } = *self;
+        let limits = &self.options.limits;
+        let all = chains(&self.picture.lines, limits.chains);
+        let proposed = hypotheses(part, self.picture, camera, &all);
+        self.advance(1)?;
+        let best = self.likeliest(&proposed.hypotheses)?;
+        let scored = self.searched(&best)?;
+        let matches = different(part, camera, scored);
+        let (matches, few): (Vec<PartMatch>, Vec<PartMatch>) =
+            matches.into_iter().partition(|m| m.is_determined(part));
+        Ok(SearchResult {
+            matches,
+            little: few.into_iter().next().map(Box::new),
+            chains: [all[0].len(), all[1].len()],
+            proposed: proposed.count,
+            cut: proposed.cut || all.iter().any(|a| a.len() == limits.chains),
+        })
+    }
+
+    /// The likeliest distinct poses after refinement to the nearest edges.
+    fn likeliest(&self, proposed: &[Hypothesis]) -> Result<Vec<Hypothesis>, SearchStopped> {
         let Self {
             part,
             picture,
@@ -45,41 +73,45 @@ impl Matcher<'_> {
             ..
         } = *self;
         let limits = &self.options.limits;
-        let all = chains(&picture.lines, limits.chains);
-        let proposed = hypotheses(part, picture, camera, &all);
-        let mut drawn: Vec<Hypothesis> = proposed
-            .hypotheses
-            .par_iter()
-            .filter_map(|h| drawn(part, picture, camera, h, &REACHES))
-            .collect();
+        let drawn = self.each(proposed, |h| drawn(part, picture, camera, h, &REACHES))?;
+        let mut drawn: Vec<Hypothesis> = drawn.into_iter().flatten().collect();
         best_first(&mut drawn);
+        self.advance(2)?;
         let near = distinct(part, camera, drawn, limits.settled);
-        let mut settled: Vec<Hypothesis> = near
-            .par_iter()
-            .map(|h| settled(part, picture, camera, h))
-            .collect();
+        let mut settled = self.each(&near, |h| settled(part, picture, camera, h))?;
         best_first(&mut settled);
-        let best = distinct(part, camera, settled, limits.searched);
-        let mut matches: Vec<PartMatch> =
-            best.par_iter().filter_map(|h| self.at(&h.pose)).collect();
+        self.advance(3)?;
+        Ok(distinct(part, camera, settled, limits.searched))
+    }
+
+    /// The matches near poses, with their prior odds. The best ones are improved.
+    fn searched(&self, poses: &[Hypothesis]) -> Result<Vec<PartMatch>, SearchStopped> {
+        let matches = self.each(poses, |h| self.at(&h.pose))?;
+        let mut matches: Vec<PartMatch> = matches.into_iter().flatten().collect();
         matches.sort_by(|a, b| b.ratio.total_cmp(&a.ratio));
+        self.advance(4)?;
         let rest = matches.split_off(matches.len().min(IMPROVED));
-        let mut matches: Vec<PartMatch> = matches
-            .into_par_iter()
-            .map(|m| self.with_outliers_removed(m))
-            .collect();
+        let mut matches = self.each(&matches, |m| self.with_outliers_removed(m.clone()))?;
         matches.extend(rest);
-        let scored = matches.into_par_iter().map(|m| self.scored(m)).collect();
-        let matches = different(part, camera, scored);
-        let (matches, few): (Vec<PartMatch>, Vec<PartMatch>) =
-            matches.into_iter().partition(|m| m.is_determined(part));
-        SearchResult {
-            matches,
-            little: few.into_iter().next().map(Box::new),
-            chains: [all[0].len(), all[1].len()],
-            proposed: proposed.count,
-            cut: proposed.cut || all.iter().any(|a| a.len() == limits.chains),
-        }
+        let scored = self.each(&matches, |m| self.scored(m.clone()))?;
+        self.advance(SEARCH_STEPS)?;
+        Ok(scored)
+    }
+
+    /// What a function gives for each of some values, in their order.
+    fn each<T: Sync, U: Send>(
+        &self,
+        all: &[T],
+        f: impl Fn(&T) -> U + Sync,
+    ) -> Result<Vec<U>, SearchStopped> {
+        let next = |value| self.monitor.check().map(|()| f(value));
+        all.par_iter().map(next).collect()
+    }
+
+    /// Reports the number of steps that are done.
+    fn advance(&self, done: u64) -> Result<(), SearchStopped> {
+        self.monitor.advance(done);
+        self.monitor.check()
     }
 
     /// The match near a pose: correspondences and pose are refined in turn until they converge.
@@ -95,6 +127,7 @@ impl Matcher<'_> {
             picture,
             camera,
             options,
+            ..
         } = *self;
         let mut pose = *start;
         let mut known: Option<PartMatch> = None;
@@ -157,7 +190,8 @@ impl Matcher<'_> {
             arcs,
             pulls,
         };
-        evaluated.ratio = ratio(&evaluated, self.picture.straightness);
+        let measures = ScoreMeasures::new(&evaluated, self.picture.straightness);
+        evaluated.ratio = WEIGHTS.ratio(&measures);
         Some(evaluated)
     }
 
@@ -173,7 +207,8 @@ impl Matcher<'_> {
         }
         scored.shape = ShapeEvidence::new(self.part, self.camera, &scored);
         scored.framed = framed(self.picture, &scored.pairs);
-        scored.odds = odds(&scored, self.picture.straightness);
+        let measures = ScoreMeasures::new(&scored, self.picture.straightness);
+        scored.odds = WEIGHTS.odds(&measures);
         scored
     }
 

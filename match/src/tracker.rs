@@ -5,6 +5,7 @@ use crate::camera::Pinhole;
 use crate::hypothesis::{Hypothesis, REACHES, drawn, settled};
 use crate::matcher::Matcher;
 use crate::part::SoughtPart;
+use crate::search::monitor::{SEARCH_STEPS, SearchStopped};
 use crate::verification::part_match::{PartMatch, SearchResult};
 use nalgebra::Isometry3;
 
@@ -53,22 +54,26 @@ impl Matcher<'_> {
     }
 
     /// The result for the next image of a sequence.
-    pub fn next(&self, last: Option<&Isometry3<f64>>) -> TrackResult {
+    ///
+    /// # Errors
+    /// The monitor stopped the search.
+    pub fn next(&self, last: Option<&Isometry3<f64>>) -> Result<TrackResult, SearchStopped> {
         match last.and_then(|p| self.follow(p)) {
             Some(found) => {
                 let finding = SearchResult {
                     matches: vec![found],
                     ..SearchResult::default()
                 };
-                TrackResult {
+                self.monitor.advance(SEARCH_STEPS);
+                Ok(TrackResult {
                     result: finding,
                     anew: false,
-                }
+                })
             }
-            None => TrackResult {
-                result: self.find(),
+            None => Ok(TrackResult {
+                result: self.find()?,
                 anew: true,
-            },
+            }),
         }
     }
 }

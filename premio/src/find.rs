@@ -2,6 +2,7 @@
 
 use crate::model::Model;
 use crate::picture::{PictureError, PictureFormat, draw_match};
+use crate::progress::{Cancelled, Progress};
 use crate::{Error, Result, Solid};
 use nalgebra::Isometry3;
 use premio_detect::{Detector, Grey};
@@ -13,8 +14,10 @@ use premio_matching::output::explain::explained;
 use premio_matching::output::report::{MatchReport, MatchSeconds, Pose};
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
+use premio_matching::search::monitor::SearchStopped;
 use premio_matching::tracker::TrackResult;
 use premio_matching::verification::part_match::{PartMatch, SearchOptions, SearchResult};
+use premio_matching::verification::scoring::ScoreMeasures;
 use std::fmt;
 use std::time::Instant;
 
@@ -42,6 +45,7 @@ pub struct PartFinder<'s> {
     prior: DetectabilityPrior,
     detector: Detector,
     options: SearchOptions,
+    progress: Progress<'s>,
     name: String,
 }
 
@@ -52,6 +56,7 @@ impl fmt::Debug for PartFinder<'_> {
             .field("name", &self.name)
             .field("detector", &self.detector)
             .field("options", &self.options)
+            .field("progress", &self.progress)
             .finish_non_exhaustive()
     }
 }
@@ -136,6 +141,7 @@ impl<'s> PartFinder<'s> {
             prior,
             detector,
             options: SearchOptions::default(),
+            progress: Progress::new(),
             name: String::new(),
         })
     }
@@ -196,10 +202,36 @@ impl<'s> PartFinder<'s> {
         self
     }
 
+    /// Sets the receiver of the progress of each search, whose token cancels it.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let solid = block(6, 4, 2).evaluate()?;
+    /// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let token = CancelToken::new();
+    /// let progress = Progress::new()
+    ///     .with_callback(|step| println!("{} of {}", step.done, step.total))
+    ///     .with_token(&token);
+    /// let finder = PartFinder::new(&solid)?.with_progress(progress);
+    /// assert!(finder.find(&nothing, &camera).is_ok());
+    /// token.cancel();
+    /// assert!(matches!(finder.find(&nothing, &camera), Err(premio::Error::Cancelled(_))));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_progress(mut self, progress: Progress<'s>) -> Self {
+        self.progress = progress;
+        self
+    }
+
     /// Searches the whole picture for the solid.
     ///
     /// # Errors
-    /// The camera did not take a picture of this size.
+    /// The camera did not take a picture of this size; or the search was cancelled.
     ///
     /// # Examples
     ///
@@ -214,13 +246,16 @@ impl<'s> PartFinder<'s> {
     /// ```
     pub fn find(&self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
         let camera = camera.for_picture([picture.width, picture.height])?;
-        Ok(self.find_with(picture.clone(), camera, "", |matcher| {
-            (matcher.find(), None)
-        }))
+        self.find_with(picture.clone(), camera, "", |matcher| {
+            Ok((matcher.find()?, None))
+        })
     }
 
     /// Searches a picture with a function, which returns the search result, and for a sequence
     /// whether the whole picture was searched.
+    ///
+    /// # Errors
+    /// The search was cancelled.
     ///
     /// # Examples
     ///
@@ -232,7 +267,7 @@ impl<'s> PartFinder<'s> {
     /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
     /// let camera = camera.for_picture([64, 48])?;
     /// let finder = PartFinder::new(&solid)?;
-    /// let found = finder.find_with(nothing, camera, "a.png", |matcher| (matcher.find(), None));
+    /// let found = finder.find_with(nothing, camera, "a.png", |m| Ok((m.find()?, None)))?;
     /// assert_eq!(found.report().image, "a.png");
     /// # Ok::<(), premio::Error>(())
     /// ```
@@ -241,8 +276,8 @@ impl<'s> PartFinder<'s> {
         picture: Grey,
         camera: Pinhole,
         name: &str,
-        look: impl FnOnce(&Matcher<'_>) -> (SearchResult, Option<bool>),
-    ) -> PictureMatch {
+        look: impl FnOnce(&Matcher<'_>) -> Result<(SearchResult, Option<bool>), SearchStopped>,
+    ) -> Result<PictureMatch> {
         let started = Instant::now();
         let DownsampledImage {
             grey,
@@ -257,8 +292,9 @@ impl<'s> PartFinder<'s> {
             picture: &features,
             camera: &camera,
             options: &self.options,
+            monitor: &self.progress,
         };
-        let (result, anew) = look(&matcher);
+        let (result, anew) = look(&matcher).map_err(|SearchStopped| Cancelled)?;
         let seconds = MatchSeconds {
             features: detecting,
             matching: started.elapsed().as_secs_f64() - detecting,
@@ -266,12 +302,12 @@ impl<'s> PartFinder<'s> {
         let names = [name, &self.name];
         let mut report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
         report.anew = anew;
-        PictureMatch {
+        Ok(PictureMatch {
             grey,
             features,
             result,
             report,
-        }
+        })
     }
 
     /// Follows the solid through the pictures of a sequence.
@@ -319,7 +355,7 @@ impl PartTracker<'_> {
     /// The solid in the next picture.
     ///
     /// # Errors
-    /// The camera did not take a picture of this size.
+    /// As [`PartFinder::find`]. The last pose stays.
     ///
     /// # Examples
     ///
@@ -335,10 +371,13 @@ impl PartTracker<'_> {
     /// ```
     pub fn next(&mut self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
         let camera = camera.for_picture([picture.width, picture.height])?;
-        Ok(self.next_with(picture.clone(), camera, ""))
+        self.next_with(picture.clone(), camera, "")
     }
 
     /// The solid in the next picture, with the picture's name and the camera for its size.
+    ///
+    /// # Errors
+    /// The search was cancelled. The last pose stays.
     ///
     /// # Examples
     ///
@@ -350,18 +389,23 @@ impl PartTracker<'_> {
     /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
     /// let camera = camera.for_picture([64, 48])?;
     /// let finder = PartFinder::new(&solid)?;
-    /// assert_eq!(finder.track().next_with(nothing, camera, "1.png").report().image, "1.png");
+    /// assert_eq!(finder.track().next_with(nothing, camera, "1.png")?.report().image, "1.png");
     /// # Ok::<(), premio::Error>(())
     /// ```
-    pub fn next_with(&mut self, picture: Grey, camera: Pinhole, name: &str) -> PictureMatch {
+    pub fn next_with(
+        &mut self,
+        picture: Grey,
+        camera: Pinhole,
+        name: &str,
+    ) -> Result<PictureMatch> {
         let last = self.last;
         let found = self.finder.find_with(picture, camera, name, |matcher| {
-            let TrackResult { result, anew } = matcher.next(last.as_ref());
-            (result, Some(anew))
-        });
+            let TrackResult { result, anew } = matcher.next(last.as_ref())?;
+            Ok((result, Some(anew)))
+        })?;
         let accepted = found.best().filter(|m| m.is_accepted());
         self.last = accepted.map(|m: &PartMatch| m.pose);
-        found
+        Ok(found)
     }
 
     /// The pose in the last picture; none where the solid was not found.
@@ -503,6 +547,28 @@ impl PictureMatch {
     /// ```
     pub fn explained(&self) -> String {
         explained(self.best(), &self.report)
+    }
+
+    /// The match with what its score is made of in its report (`measures`).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// # use premio::prelude::*;
+    /// # let solid = block(6, 4, 2).evaluate()?;
+    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
+    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
+    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?.with_measures();
+    /// // There are none without a match.
+    /// assert!(found.report().measures.is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_measures(mut self) -> Self {
+        let best = self.result.best();
+        let straightness = self.features.straightness;
+        self.report.measures = best.map(|found| ScoreMeasures::new(found, straightness));
+        self
     }
 
     /// The bytes of the picture with the likeliest match drawn on it: found contours green, missed

@@ -1,5 +1,6 @@
 //! Progress and cancellation of long work.
 
+use premio_matching::search::monitor::{SEARCH_STEPS, SearchMonitor};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -234,5 +235,18 @@ impl StepCounter<'_, '_> {
             let total = self.total;
             callback(ProgressStep { done, total });
         }
+    }
+}
+
+impl SearchMonitor for Progress<'_> {
+    fn advance(&self, done: u64) {
+        let total = SEARCH_STEPS;
+        if let Some(callback) = &self.callback {
+            callback(ProgressStep { done, total });
+        }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.token.is_cancelled()
     }
 }

@@ -11,6 +11,7 @@ use premio_matching::matcher::Matcher;
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_matching::search::Strategy;
+use premio_matching::search::monitor::{SEARCH_STEPS, SearchMonitor};
 use premio_matching::verification::part_match::{
     PartMatch, SearchLimits, SearchOptions, SearchResult,
 };
@@ -21,6 +22,7 @@ use premio_predict::setup::Setup;
 use premio_tests::parts::cube_with_cuts;
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
+use std::sync::Mutex;
 
 const SIZE: [usize; 2] = [320, 240];
 const FOCAL: f64 = 350.0;
@@ -101,12 +103,13 @@ fn looked<T>(
         picture,
         camera: &camera(),
         options,
+        monitor: &(),
     })
 }
 
 fn look(part: &SoughtPart<'_>, grey: &Grey, options: &SearchOptions) -> SearchResult {
     let picture = ImageFeatures::new(grey, &detector());
-    looked(part, &picture, options, |look| look.find())
+    looked(part, &picture, options, |look| look.find()).unwrap()
 }
 
 /// The error of a pose, minimised over the part's symmetries: of the centre, in units of the part's
@@ -251,8 +254,9 @@ fn what_is_drawn_is_not_taken_for_a_cube() {
                 skew: 0.0,
             },
             options: &SearchOptions::default(),
+            monitor: &(),
         };
-        let finding = look.find();
+        let finding = look.find().unwrap();
         let best = finding.best().unwrap();
         assert!(!best.is_accepted(), "{} {}", best.ratio, best.odds);
         assert!(best.framed > 0.9, "{}", best.framed);
@@ -377,6 +381,45 @@ fn an_empty_picture_holds_nothing() {
         let finding = look(&part, &grey, &SearchOptions::default());
         assert!(finding.best().is_none());
         assert_eq!(finding.proposed, 0);
+    }
+}
+
+/// Records the steps of a search, and stops it after some of them.
+#[derive(Debug)]
+struct Stopper {
+    steps: Mutex<Vec<u64>>,
+    last: u64,
+}
+
+impl SearchMonitor for Stopper {
+    fn advance(&self, done: u64) {
+        self.steps.lock().unwrap().push(done);
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.steps.lock().unwrap().last() == Some(&self.last)
+    }
+}
+
+#[test]
+fn a_monitor_receives_every_step_and_stops_the_search() {
+    let evaluation = part(&cube_with_cuts());
+    let subject = PreparedPart::new(&evaluation.brep, evaluation.resolution).unwrap();
+    let part = sought(&evaluation, &DetectabilityPrior::nothing());
+    let truth = pose(&subject, [3.1, 2.4, 2.6], [0.0; 3]);
+    let seen = ImageFeatures::new(&picture(&subject, &truth, 1), &detector());
+    for last in 1..=SEARCH_STEPS + 1 {
+        let monitor = Stopper {
+            steps: Mutex::default(),
+            last,
+        };
+        let result = looked(&part, &seen, &SearchOptions::default(), |look| {
+            let monitor = &monitor;
+            Matcher { monitor, ..*look }.find()
+        });
+        assert_eq!(result.is_ok(), last > SEARCH_STEPS);
+        let steps = monitor.steps.into_inner().unwrap();
+        assert_eq!(steps, Vec::from_iter(1..=last.min(SEARCH_STEPS)));
     }
 }
 

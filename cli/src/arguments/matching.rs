@@ -43,7 +43,7 @@ pub struct SoughtOptions {
 pub struct MatchOptions {
     #[command(flatten)]
     pub sought: SoughtOptions,
-    /// Explain in words why the winning correspondences won
+    /// Explain in words why the winning correspondences won, and list what the score is made of
     #[arg(long)]
     pub explain: bool,
 }

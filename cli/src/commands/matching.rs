@@ -9,15 +9,14 @@ use crate::output::Outputs;
 use crate::session::Session;
 use crate::{imaging, output};
 use premio::{
-    DetectabilityPrior, Detector, Format, Grey, PartFinder, PictureMatch, Pinhole, SearchOptions,
-    Strategy, default_detector,
+    CancelToken, DetectabilityPrior, Detector, Format, Grey, PartFinder, PictureMatch, Pinhole,
+    Progress, SearchOptions, Strategy, default_detector,
 };
 use premio_matching::output::report::BOP;
 use premio_predict::model::file::ModelFile;
 use premio_predict::model::record::Record;
 use std::fmt::Write;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 /// The part and the options of the search.
 struct Sought {
@@ -33,9 +32,14 @@ struct Sought {
 /// Runs `match`.
 pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
     let sought = read(&options.sought, session)?;
-    let finder = sought.finder(&options.sought)?;
+    let stop = CancelToken::from(stop()?);
+    let finder = sought.finder(&options.sought, &stop)?;
     let look = |picture: Grey, camera: Pinhole, name: &str| {
-        finder.find_with(picture, camera, name, |matcher| (matcher.find(), None))
+        let found = finder.find_with(picture, camera, name, |m| Ok((m.find()?, None)))?;
+        Ok(match options.explain {
+            true => found.with_measures(),
+            false => found,
+        })
     };
     let told = |found: &PictureMatch| options.explain.then(|| found.explained());
     each(&options.sought, &sought.camera, look, told, session)
@@ -44,7 +48,8 @@ pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
 /// Runs `track`.
 pub fn track(options: &TrackOptions, session: Session) -> Result<(), CliError> {
     let sought = read(&options.sought, session)?;
-    let finder = sought.finder(&options.sought)?;
+    let stop = CancelToken::from(stop()?);
+    let finder = sought.finder(&options.sought, &stop)?;
     let mut tracker = finder.track();
     let look =
         |picture: Grey, camera: Pinhole, name: &str| tracker.next_with(picture, camera, name);
@@ -60,11 +65,18 @@ impl Sought {
         }
     }
 
-    fn finder(&self, options: &SoughtOptions) -> Result<PartFinder<'_>, CliError> {
+    /// The finder of the part, which an interrupt stops.
+    fn finder(
+        &self,
+        options: &SoughtOptions,
+        stop: &CancelToken,
+    ) -> Result<PartFinder<'_>, CliError> {
         let (brep, detector) = (self.described.solid.brep(), self.detector.clone());
         let finder = PartFinder::from_brep(brep, self.resolution, self.prior(options), detector);
         let finder = finder.map_err(CliError::library)?;
-        Ok(finder.with_name(&self.name).with_options(self.options))
+        let progress = Progress::new().with_token(stop);
+        let finder = finder.with_name(&self.name).with_options(self.options);
+        Ok(finder.with_progress(progress))
     }
 }
 
@@ -130,23 +142,22 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
 fn each(
     options: &SoughtOptions,
     camera: &PinholeFile,
-    mut look: impl FnMut(Grey, Pinhole, &str) -> PictureMatch,
+    mut look: impl FnMut(Grey, Pinhole, &str) -> premio::Result<PictureMatch>,
     explain: impl Fn(&PictureMatch) -> Option<String>,
     session: Session,
 ) -> Result<(), CliError> {
     let voice = session.voice;
-    let stop = stop()?;
     let bar = voice.progress(options.images.len() as u64);
     let (mut lines, mut poses) = (String::new(), format!("{BOP}\n"));
     let mut outputs = Outputs::default();
     let (mut seen, mut failed) = (0, None);
     for (number, path) in (1..).zip(&options.images) {
-        if stop.load(Ordering::Relaxed) {
-            bar.finish_and_clear();
-            return Err(CliError::Interrupted);
-        }
         let found = match at(camera, path, &mut look, session) {
             Ok(found) => found,
+            Err(CliError::Interrupted) => {
+                bar.finish_and_clear();
+                return Err(CliError::Interrupted);
+            }
             // The other pictures are still searched.
             Err(failure) => {
                 let said = failed.replace(failure);
@@ -200,12 +211,12 @@ fn each(
 fn at(
     camera: &PinholeFile,
     path: &Path,
-    look: &mut impl FnMut(Grey, Pinhole, &str) -> PictureMatch,
+    look: &mut impl FnMut(Grey, Pinhole, &str) -> premio::Result<PictureMatch>,
     session: Session,
 ) -> Result<PictureMatch, CliError> {
     let grey = imaging::read(path, session)?;
     let camera = camera.for_picture(path, [grey.width, grey.height])?;
-    Ok(look(grey, camera, &path.display().to_string()))
+    look(grey, camera, &path.display().to_string()).map_err(CliError::library)
 }
 
 /// The number at the end of a picture's name.

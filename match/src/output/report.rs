@@ -8,7 +8,7 @@ use crate::search::SearchStats;
 use crate::verification::part_match::{PartMatch, SearchResult};
 use crate::verification::residuals::SystematicOffset;
 use crate::verification::score_weights::WEIGHTS;
-use crate::verification::scoring::is_figure;
+use crate::verification::scoring::ScoreMeasures;
 use crate::verification::shape_evidence::ShapeEvidence;
 use nalgebra::{Isometry3, Matrix3};
 use premio_kernel::geometry::frame::Frame;
@@ -203,6 +203,9 @@ pub struct MatchReport {
     /// The covariance of the pose's error: rotation about the camera's axes through the part's
     /// origin, in radians, and translation, in the part's unit; row by row.
     pub covariance: Option<[[f64; 6]; 6]>,
+    /// What the weights of the score apply to, if an explanation is wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measures: Option<ScoreMeasures>,
     /// The root mean square distance of edges from contours, in pixels.
     pub rms: Option<f64>,
     /// The residual of long straight segments from their lines in the picture, in pixels: `rms` may
@@ -265,6 +268,7 @@ impl MatchReport {
             pose: best.map(|m| Pose::from(&m.pose)),
             covariance: best
                 .map(|m| std::array::from_fn(|i| std::array::from_fn(|j| m.covariance[(i, j)]))),
+            measures: None,
             rms: best.map(|m| m.rms),
             straightness: picture.straightness,
             alternatives: best.map_or(Vec::new(), |m| {
@@ -390,7 +394,8 @@ fn reason(part: &SoughtPart<'_>, picture: &ImageFeatures, finding: &SearchResult
         };
     };
     let (found, all) = (best.found(), best.pairs.len());
-    let others = match (is_figure(best), best.weight() >= 0.0) {
+    let measures = ScoreMeasures::new(best, picture.straightness);
+    let others = match (measures.is_figure(&WEIGHTS), best.weight() >= 0.0) {
         (true, _) => "all of them could be a figure on a flat thing, or a frame",
         (_, true) => "another thing that has these features and lacks the others is likelier",
         _ => "other things agree as well with the picture",

@@ -6,11 +6,12 @@
 //! each remaining feature, the greatest score that it can add. That is maximised for each feature
 //! by itself, given the assigned features, with the greatest scores of pairs of remaining ones, so
 //! no completion scores more. Choices that no best assignment contains are eliminated before the
-//! search.
+//! search. [`monitor`] receives the progress of a search and may stop it.
 
 mod branch_and_bound;
 mod dead_end_elimination;
 mod ida_star;
+pub mod monitor;
 mod path;
 mod potentials;
 #[cfg(test)]

@@ -1,12 +1,13 @@
-//! The weights by which a match is scored, all in one place.
-//!
-//! They separate the right poses from the wrong ones best in the images of `tests/pictures/find.py`,
-//! and in others that do not show a part. `prior_odds` is chosen so that no wrong pose of the former
-//! is accepted.
+//! The weights by which a match is scored. The file `score_weights.toml` has their values;
+//! `tests/pictures/refit.py` refits them.
+
+use serde::Deserialize;
+use std::sync::LazyLock;
 
 /// The weights of the terms of a match's score, and the limits from which they count. Logarithms are
 /// natural; lengths are in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ScoreWeights {
     /// The fewest features that determine a pose of any part.
     pub min_features: usize,
@@ -85,42 +86,11 @@ pub struct ScoreWeights {
     pub evidence_tempering: f64,
 }
 
-/// The weights in use.
-pub const WEIGHTS: ScoreWeights = ScoreWeights {
-    min_features: 5,
-    min_features_of_revolution: 3,
-    min_pose_information: 15.0,
-    min_length: 320.0,
-    prior_odds: 4.4,
-    evidence_scale: 40.0,
-    missing_features: 2.0,
-    missing_relations: 0.25,
-    usual_features: 9.0,
-    share: 10.0,
-    usual_share: 0.8,
-    roughness: 2.0,
-    roughness_odds: 5.2,
-    min_residual: 0.11,
-    systematic_offset: 4.8,
-    max_systematic_offset: 3.0,
-    offset_floor: 0.05,
-    in_frame: 9.0,
-    missed: 19.5,
-    shortness: 10.2,
-    sufficient_length: 640.0,
-    overrun: 3.0,
-    shape: 1.0,
-    max_shape: 6.0,
-    carriers: 19.5,
-    flat: 22.0,
-    relief: 0.09,
-    figure_shape: 5.0,
-    solid_shape: 8.0,
-    axis_alignment: 34.0,
-    subpart_odds: 5.0,
-    subpart_shape: 7.0,
-    evidence_tempering: 3.5,
-};
+/// The weights in use, read from `score_weights.toml`.
+pub static WEIGHTS: LazyLock<ScoreWeights> = LazyLock::new(|| {
+    let text = include_str!("score_weights.toml");
+    toml::from_str(text).expect("a test reads the weights")
+});
 
 impl ScoreWeights {
     /// The fewest features that determine a pose of a part, of revolution or not.
@@ -129,5 +99,22 @@ impl ScoreWeights {
             true => self.min_features_of_revolution,
             false => self.min_features,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_has_a_finite_value_of_every_weight() {
+        let values: toml::Table = toml::from_str(include_str!("score_weights.toml")).unwrap();
+        assert_eq!(values.len(), 33);
+        assert_eq!(WEIGHTS.fewest_features(false), WEIGHTS.min_features);
+        let finite = |v: &toml::Value| match v {
+            toml::Value::Float(v) => v.is_finite() && *v > 0.0,
+            v => v.as_integer().is_some_and(|v| v > 0),
+        };
+        assert!(values.values().all(finite));
     }
 }

@@ -312,6 +312,9 @@ pub struct ConvertOptions {
     /// Refuse numbers that the other language cannot hold exactly, instead of writing the nearest
     #[arg(long)]
     pub exact: bool,
+    /// Recover the relations that rounded coordinates destroyed: coplanar, coaxial, tangent
+    #[arg(long)]
+    pub recover: bool,
     #[command(flatten)]
     pub reading: ReadingOptions,
 }

@@ -4,7 +4,7 @@ use crate::arguments::DescriptionOptions;
 use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use premio::shards::language;
-use premio::{Arithmetic, CoincidencePolicy, EvaluationOptions, Solid};
+use premio::{Arithmetic, CoincidencePolicy, EvaluationOptions, Recovery, Solid};
 use premio_csg::reader::{self, Format, ReadOptions};
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::DescriptionRecord as Written;
@@ -48,12 +48,24 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         false => Arithmetic::Filtered,
     };
     let part = evaluated(name, format, written, digits, voice)?;
+    if let Some(recovery) = part.solid.recovery() {
+        let text = recovery_note(recovery);
+        if options.strict {
+            return Err(CliError::limit(format!("{}: {text}", part.name)));
+        }
+        voice.note(&part.name, &text);
+    }
     let calls = part.solid.close_calls();
     if options.strict && !calls.is_empty() {
         return Err(CliError::close(&part.name, part.solid.resolution(), calls));
     }
     voice.close_calls(&part.name, part.solid.resolution(), calls);
     Ok(part)
+}
+
+/// What was recovered of a description, and how to take it as written.
+fn recovery_note(recovery: &Recovery) -> String {
+    format!("{recovery} (`--exact` and `--resolution` take the coordinates as written)")
 }
 
 /// The part of a description, read with the default options.

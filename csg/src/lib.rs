@@ -5,6 +5,7 @@ pub mod object_model;
 pub mod primitive;
 pub mod ray_casting;
 pub mod reader;
+pub mod recover;
 pub mod transform;
 pub mod tree;
 pub mod writer;

@@ -9,7 +9,7 @@ use dashu::base::Sign;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::number::float::Float;
-use crate::number::rational::{Rational, bits, exact_sqrt, from_f64, to_f64};
+use crate::number::rational::{Rational, bits, exact_sqrt, from_f64, to_f64, whole};
 
 /// A 3x3 matrix by rows.
 pub type RationalMatrix = [[Rational; 3]; 3];
@@ -86,6 +86,35 @@ impl Motion {
         ];
         let scaled = matrix.map(|row| row.map(|entry| entry / &norm));
         Some(Self::from_parts(scaled, Self::identity().translation))
+    }
+
+    /// A quaternion `w + x i + y j + z k` of the rotation, of any length.
+    pub fn quaternion(&self) -> [Rational; 4] {
+        let m = self.rotation_matrix();
+        let one = Rational::ONE;
+        let [xx, yy, zz] = [&m[0][0], &m[1][1], &m[2][2]];
+        let [wx, wy, wz] = [
+            &m[2][1] - &m[1][2],
+            &m[0][2] - &m[2][0],
+            &m[1][0] - &m[0][1],
+        ];
+        let [xy, xz, yz] = [
+            &m[0][1] + &m[1][0],
+            &m[0][2] + &m[2][0],
+            &m[1][2] + &m[2][1],
+        ];
+        // Each is the quaternion times four times one of its entries, which may be zero.
+        let multiples = [
+            [&one + xx + yy + zz, wx.clone(), wy.clone(), wz.clone()],
+            [wx, &one + xx - yy - zz, xy.clone(), xz.clone()],
+            [wy, xy, &one - xx + yy - zz, yz.clone()],
+            [wz, xz, yz, &one - xx - yy + zz],
+        ];
+        let found = multiples
+            .into_iter()
+            .enumerate()
+            .find(|(k, multiple)| !multiple[*k].is_zero());
+        found.map_or_else(Default::default, |(_, multiple)| whole(&multiple))
     }
 
     /// The motion with this rotation matrix and translation; `None` unless the matrix is exactly

@@ -12,6 +12,7 @@ use premio_csg::builder::{Builder, SolidId};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::primitive::{Primitive, PrimitiveError};
 use premio_csg::reader::{Format, Note, Program};
+use premio_csg::recover::recovered;
 use premio_csg::transform::{Transform, TransformStep};
 use premio_csg::tree::{Operation, Tree};
 use premio_csg::writer;
@@ -470,8 +471,18 @@ impl Expression {
             noise: options.noise.or(self.noise()),
             ..*options
         };
+        let recovery = options.recovers().then(|| recovered(&tree)).flatten();
+        let tree = recovery
+            .as_ref()
+            .map_or(tree, |recovery| recovery.tree.clone());
         let evaluation = evaluate(&tree, &options)?;
-        Ok(Solid::new(tree, evaluation, self.clone(), &options))
+        Ok(Solid::new(
+            tree,
+            evaluation,
+            recovery,
+            self.clone(),
+            &options,
+        ))
     }
 
     /// A description that is read as the same solid.

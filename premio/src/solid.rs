@@ -6,6 +6,7 @@ use crate::{Camera, Error, Expression, Result, View};
 use nalgebra::Point3;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions};
 use premio_csg::object_model::ObjectModel;
+use premio_csg::recover::Recovery;
 use premio_csg::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::point_in_solid::contains;
@@ -40,6 +41,7 @@ pub struct Solid(Arc<SolidData>);
 struct SolidData {
     tree: Tree,
     evaluation: Evaluation,
+    recovery: Option<Recovery>,
     expression: Expression,
     options: EvaluationOptions,
 }
@@ -59,15 +61,30 @@ impl Solid {
     pub(crate) fn new(
         tree: Tree,
         evaluation: Evaluation,
+        recovery: Option<Recovery>,
         expression: Expression,
         options: &EvaluationOptions,
     ) -> Self {
         Self(Arc::new(SolidData {
             tree,
             evaluation,
+            recovery,
             expression,
             options: *options,
         }))
+    }
+
+    /// The relations between primitives that the rounding of the coordinates had destroyed, and that
+    /// were recovered before the evaluation; none if the coordinates are not rounded.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// assert!(premio::block(6, 4, 2).evaluate()?.recovery().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn recovery(&self) -> Option<&Recovery> {
+        self.0.recovery.as_ref()
     }
 
     /// The volume, in cubic units.

@@ -5,6 +5,7 @@ use crate::diagnostics::{CliError, counted};
 use crate::session::Session;
 use crate::{input, output};
 use premio_csg::reader::{self, Format, Program, ReadOptions};
+use premio_csg::recover::recovered;
 use premio_csg::tree::Tree;
 use premio_csg::writer;
 
@@ -13,9 +14,20 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), CliError> {
     let voice = session.voice;
     let name = options.file.display().to_string();
     let target = input::format(&options.output)?;
-    let source = source(&name, options, session)?;
+    let mut source = source(&name, options, session)?;
     let failed = |e: &dyn std::fmt::Display| CliError::limit(format!("{name}: {e}"));
-    let tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
+    let mut tree = source.builder.finish(source.part).map_err(|e| failed(&e))?;
+    if options.recover {
+        match recovered(&tree) {
+            Some(recovery) => {
+                let described = recovery.to_builder().map_err(|e| failed(&e))?;
+                (source.builder, source.part) = described;
+                voice.note(&name, &recovery.to_string());
+                tree = recovery.tree;
+            }
+            None => voice.note(&name, NOTHING_RECOVERED),
+        }
+    }
     if tree.is_empty() {
         voice.note(&name, input::EMPTY);
     }
@@ -40,6 +52,10 @@ pub fn run(options: &ConvertOptions, session: Session) -> Result<(), CliError> {
     }
     output::write(&text, Some(&options.output))
 }
+
+/// The note on a description that stays as it is.
+const NOTHING_RECOVERED: &str = "no relation of primitives is recovered: the coordinates are not \
+    rounded by a program, or all relations are exact";
 
 fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, CliError> {
     let format = input::format(&options.file)?;

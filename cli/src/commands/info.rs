@@ -5,6 +5,7 @@ use crate::diagnostics::CliError;
 use crate::input::{self, EvaluatedPart};
 use crate::output;
 use crate::session::Session;
+use premio::{Recovery, RelationKind};
 use premio_kernel::number::predicates::{CloseCall, DecisionStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -28,6 +29,8 @@ struct Info {
     non_manifold: NonManifold,
     faces_by_surface: BTreeMap<&'static str, usize>,
     decisions: Counts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recovered: Option<Recovered>,
     /// Every decision within a factor of a hundred of the resolution.
     close_calls: Vec<CloseCall>,
     resolution: f64,
@@ -56,6 +59,19 @@ struct Counts {
     exact: u64,
     coincident: u64,
     close_calls: usize,
+}
+
+/// The relations that the rounding of coordinates had destroyed.
+#[derive(Debug, Serialize)]
+struct Recovered {
+    rounding: String,
+    /// The number of relations by kind.
+    relations: BTreeMap<&'static str, usize>,
+    contradictory: usize,
+    moved: usize,
+    furthest: f64,
+    #[serde(skip)]
+    summary: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -108,6 +124,7 @@ impl Info {
             },
             faces_by_surface,
             decisions: Counts::new(&part.solid.evaluation().decisions),
+            recovered: part.solid.recovery().map(Recovered::new),
             close_calls: part.solid.evaluation().decisions.close_calls.clone(),
             resolution: part.solid.evaluation().resolution,
             seconds: Seconds {
@@ -130,6 +147,23 @@ impl Bounds {
         Self {
             min: found.min,
             max: found.max,
+        }
+    }
+}
+
+impl Recovered {
+    fn new(recovery: &Recovery) -> Self {
+        let count = |kind: RelationKind| {
+            let found = recovery.relations.iter().find(|r| r.kind == kind);
+            (kind.name(), found.map_or(0, |relation| relation.count))
+        };
+        Self {
+            rounding: recovery.rounding.to_string(),
+            relations: RelationKind::ALL.into_iter().map(count).collect(),
+            contradictory: recovery.contradictory,
+            moved: recovery.moved,
+            furthest: recovery.furthest,
+            summary: recovery.to_string(),
         }
     }
 }
@@ -201,6 +235,9 @@ impl fmt::Display for Info {
             f,
             "decisions   {filtered} filtered, {refined} refined, {exact} exact, {coincident} coincident, {close_calls} close calls"
         )?;
+        if let Some(recovered) = &self.recovered {
+            writeln!(f, "recovered   {}", recovered.summary)?;
+        }
         writeln!(f, "resolution  {:e}", self.resolution)?;
         let Seconds { read, evaluate } = self.seconds;
         writeln!(f, "seconds     {read:.3} read, {evaluate:.3} evaluate")

@@ -81,6 +81,14 @@ pub struct EvaluationOptions {
     pub entity_limit: Option<usize>,
 }
 
+impl EvaluationOptions {
+    /// Whether relations that the rounding of coordinates destroyed are recovered before the
+    /// evaluation: unless a resolution is given, or only proven coincidences count.
+    pub fn recovers(&self) -> bool {
+        self.resolution.is_none() && self.zeros == CoincidencePolicy::ByResolution
+    }
+}
+
 /// The arithmetic in which a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {

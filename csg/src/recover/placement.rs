@@ -1,0 +1,364 @@
+//! The positions of the primitives of a tree while their relations are recovered.
+
+use crate::recover::alignment::{Node, aligned};
+use crate::recover::circles::{Round, at_radius};
+use crate::recover::features::{Feature, LocalAxis, features};
+use crate::recover::frames::{AxisUse, Frame, Member};
+use crate::recover::rounding::Rounding;
+use crate::recover::{Recovery, RelationCount, RelationKind};
+use crate::transform::{Transform, TransformStep};
+use crate::tree::{NodeId, PlacedPrimitive, Tree, TreeNode};
+use premio_kernel::motion::{Motion, MotionError};
+use premio_kernel::number::rational::{Rational, to_f64};
+use std::collections::BTreeMap;
+
+/// The placement of a member at a position in its frame.
+fn transform(
+    frame: &Frame,
+    member: &Member,
+    position: Coordinates,
+) -> Result<Transform, MotionError> {
+    let turn = Transform::quarter_turns(&member.turn.rotation_matrix());
+    let mut transform = turn.unwrap_or_default();
+    transform.push(TransformStep::Shift(position))?;
+    if !frame.rotation.is_identity() {
+        let quaternion = frame.rotation.quaternion();
+        transform.push(TransformStep::Quaternion(quaternion))?;
+    }
+    Ok(transform)
+}
+
+/// Three coordinates.
+type Coordinates = [Rational; 3];
+
+/// Which coordinates are rounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Rounded {
+    /// Those of the surroundings.
+    Outside,
+    /// Those in the frame of each primitive.
+    InFrame,
+}
+
+/// The positions of primitives.
+#[derive(Debug)]
+pub(super) struct Placement<'t> {
+    leaves: Vec<(NodeId, &'t PlacedPrimitive)>,
+    rounding: Rounding,
+    rounded: Rounded,
+    /// By leaf: its new motion, once its frame is done.
+    motions: Vec<Option<Motion>>,
+    /// By leaf: the steps of its new motion, if it moves.
+    transforms: Vec<Option<Transform>>,
+    relations: BTreeMap<RelationKind, usize>,
+    contradictory: usize,
+}
+
+/// A primitive on a circle about the axis of another one.
+#[derive(Debug, Clone)]
+struct OnCircle {
+    /// The indices of both in their frame.
+    centre: usize,
+    member: usize,
+    /// The axis of the frame that is normal to the circle.
+    axis: usize,
+    radius: Rational,
+}
+
+/// The members of a frame with their coordinates in it.
+struct FrameCoordinates<'f> {
+    frame: &'f Frame,
+    written: Vec<Coordinates>,
+    errors: Vec<[f64; 3]>,
+    /// By member and axis: the new coordinate.
+    new: Vec<[Option<Rational>; 3]>,
+}
+
+impl<'t> Placement<'t> {
+    /// The positions as written, and their rounding; `None` if they are not rounded.
+    pub fn new(tree: &'t Tree, frames: &[Frame]) -> Option<(Self, Rounding)> {
+        let leaves: Vec<_> = tree.leaves().collect();
+        let outside = leaves.iter().flat_map(|leaf| leaf.1.motion.offset());
+        let in_frames = || {
+            let members = frames
+                .iter()
+                .flat_map(|f| f.members.iter().map(move |m| (f, m)));
+            let local = |(frame, member): (&Frame, &Member)| {
+                let inverse = frame.rotation.inverse();
+                inverse.apply_vector(leaves[member.leaf].1.motion.offset())
+            };
+            members.flat_map(local).collect::<Vec<_>>()
+        };
+        let (rounding, rounded) = match Rounding::new(outside) {
+            Some(rounding) => (rounding, Rounded::Outside),
+            None => (Rounding::new(in_frames().iter())?, Rounded::InFrame),
+        };
+        let count = leaves.len();
+        let placement = Self {
+            leaves,
+            rounding,
+            rounded,
+            motions: vec![None; count],
+            transforms: vec![None; count],
+            relations: BTreeMap::new(),
+            contradictory: 0,
+        };
+        Some((placement, rounding))
+    }
+
+    /// Aligns the members of a frame with each other and with its guests.
+    pub fn align(&mut self, frame: &Frame) {
+        let mut coordinates = self.coordinates(frame);
+        let circles = self.circles(&coordinates);
+        for axis in 0..3 {
+            self.align_along(axis, &mut coordinates, &circles);
+        }
+        for circle in &circles {
+            self.place_on_circle(circle, &mut coordinates);
+        }
+        for (k, member) in frame.members.iter().enumerate() {
+            let new = &coordinates.new[k];
+            let is_new = new.iter().any(Option::is_some);
+            let at = |axis: usize| {
+                let written = &coordinates.written[k][axis];
+                new[axis].clone().unwrap_or_else(|| written.clone())
+            };
+            let transform = is_new.then(|| transform(frame, member, [at(0), at(1), at(2)]));
+            let transform = transform.and_then(Result::ok);
+            let old = &self.leaves[member.leaf].1.motion;
+            let motion = transform.as_ref().map_or(old, Transform::motion).clone();
+            self.motions[member.leaf] = Some(motion);
+            self.transforms[member.leaf] = transform;
+        }
+    }
+
+    fn coordinates<'f>(&self, frame: &'f Frame) -> FrameCoordinates<'f> {
+        let inverse = frame.rotation.inverse();
+        let offset = |m: &Member| self.leaves[m.leaf].1.motion.offset();
+        let members = &frame.members;
+        let written: Vec<Coordinates> = members
+            .iter()
+            .map(|m| inverse.apply_vector(offset(m)))
+            .collect();
+        let errors = members.iter().zip(&written);
+        let errors = errors.map(|(m, written)| match self.rounded {
+            Rounded::InFrame => written.each_ref().map(|x| self.rounding.error(x)),
+            Rounded::Outside => {
+                let outside = offset(m).each_ref().map(|x| self.rounding.error(x));
+                let rotation = frame.rotation.rotation_f64();
+                let along = |k: usize| (0..3).map(|i| rotation[(i, k)].abs() * outside[i]).sum();
+                std::array::from_fn(along)
+            }
+        });
+        FrameCoordinates {
+            frame,
+            errors: errors.collect(),
+            new: vec![Default::default(); members.len()],
+            written,
+        }
+    }
+
+    /// The numbers of a primitive along an axis of a frame.
+    fn numbers(&self, leaf: usize, axis: AxisUse) -> Vec<Feature> {
+        let mut all = features(&self.leaves[leaf].1.primitive, axis.local);
+        if axis.is_reversed {
+            for feature in &mut all {
+                feature.offset = -feature.offset.clone();
+            }
+        }
+        all
+    }
+
+    fn align_along(
+        &mut self,
+        axis: usize,
+        coordinates: &mut FrameCoordinates<'_>,
+        circles: &[OnCircle],
+    ) {
+        let frame = coordinates.frame;
+        let is_on_circle = |k: usize| circles.iter().any(|c| c.member == k && c.axis != axis);
+        let members: Vec<usize> = (0..frame.members.len())
+            .filter(|&k| !is_on_circle(k))
+            .collect();
+        let mut nodes: Vec<Node> = members
+            .iter()
+            .map(|&k| {
+                let member = &frame.members[k];
+                Node {
+                    position: coordinates.written[k][axis].clone(),
+                    error: coordinates.errors[k][axis],
+                    features: self.numbers(member.leaf, member.axes[axis]),
+                }
+            })
+            .collect();
+        let inverse = frame.rotation.inverse();
+        for guest in &frame.guests {
+            let motion = self.motions[guest.leaf].as_ref();
+            if let (Some(used), Some(motion)) = (guest.axes[axis], motion) {
+                let [x, y, z] = inverse.apply_vector(motion.offset());
+                nodes.push(Node {
+                    position: [x, y, z][axis].clone(),
+                    error: 0.0,
+                    features: self.numbers(guest.leaf, used),
+                });
+            }
+        }
+        let alignment = aligned(&nodes);
+        self.contradictory += alignment.contradictory;
+        for kind in alignment.relations {
+            *self.relations.entry(kind).or_default() += 1;
+        }
+        for (&k, position) in members.iter().zip(alignment.positions) {
+            coordinates.new[k][axis] = position;
+        }
+    }
+
+    /// The members of a frame that lie on a circle about another one and are not placed by numbers.
+    fn circles(&self, coordinates: &FrameCoordinates<'_>) -> Vec<OnCircle> {
+        let count = coordinates.frame.members.len();
+        let mut found: Vec<OnCircle> = Vec::new();
+        for axis in 0..3 {
+            for centre in 0..count {
+                for member in (0..count).filter(|m| *m != centre) {
+                    let radius = self.radius_of_circle(coordinates, axis, centre, member);
+                    let is_new = found.iter().all(|c| c.member != member);
+                    if let (Some(radius), true) = (radius, is_new) {
+                        found.push(OnCircle {
+                            centre,
+                            member,
+                            axis,
+                            radius,
+                        });
+                    }
+                }
+            }
+        }
+        let moved: Vec<usize> = found.iter().map(|circle| circle.member).collect();
+        found.retain(|circle| {
+            !moved.contains(&circle.centre) && !self.has_place(coordinates, circle, &moved)
+        });
+        found
+    }
+
+    fn radius_of_circle(
+        &self,
+        coordinates: &FrameCoordinates<'_>,
+        axis: usize,
+        centre: usize,
+        member: usize,
+    ) -> Option<Rational> {
+        let centre = self.round(coordinates, axis, centre)?;
+        let member = self.round(coordinates, axis, member)?;
+        centre.circle(&member)
+    }
+
+    /// A member as a primitive of revolution about an axis of the frame.
+    fn round(
+        &self,
+        coordinates: &FrameCoordinates<'_>,
+        axis: usize,
+        k: usize,
+    ) -> Option<Round<'t>> {
+        let member = &coordinates.frame.members[k];
+        let placed = self.leaves[member.leaf].1;
+        let used = member.axes[axis];
+        let is_sphere = member.axes.iter().all(|a| a.local == LocalAxis::Across);
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        let is_round = across
+            .iter()
+            .all(|&i| member.axes[i].local == LocalAxis::Across);
+        if !is_sphere && !(is_round && used.local == LocalAxis::Along(2)) {
+            return None;
+        }
+        let written = &coordinates.written[k];
+        let errors = &coordinates.errors[k];
+        Some(Round {
+            primitive: &placed.primitive,
+            is_reversed: used.is_reversed,
+            centre: across.map(|i| to_f64(&written[i])),
+            along: to_f64(&written[axis]),
+            errors: [errors[across[0]], errors[across[1]], errors[axis]],
+        })
+    }
+
+    /// Whether numbers of members that are on no circle determine the place of one across the axis.
+    fn has_place(
+        &self,
+        coordinates: &FrameCoordinates<'_>,
+        circle: &OnCircle,
+        moved: &[usize],
+    ) -> bool {
+        let members = &coordinates.frame.members;
+        let numbers = |k: usize, axis: usize| {
+            let own = &coordinates.written[k][axis];
+            let all = self.numbers(members[k].leaf, members[k].axes[axis]);
+            all.into_iter().map(move |f| to_f64(&(own + &f.offset)))
+        };
+        let across = [(circle.axis + 1) % 3, (circle.axis + 2) % 3];
+        across.iter().all(|&axis| {
+            let own: Vec<f64> = numbers(circle.member, axis).collect();
+            let others = (0..members.len()).filter(|k| !moved.contains(k));
+            others.into_iter().any(|k| {
+                let error = coordinates.errors[k][axis] + coordinates.errors[circle.member][axis];
+                numbers(k, axis).any(|x| own.iter().any(|y| (x - y).abs() <= error))
+            })
+        })
+    }
+
+    /// Moves a member onto its circle.
+    fn place_on_circle(&mut self, circle: &OnCircle, coordinates: &mut FrameCoordinates<'_>) {
+        let across = [(circle.axis + 1) % 3, (circle.axis + 2) % 3];
+        let centre = across.map(|i| {
+            let new = &coordinates.new[circle.centre][i];
+            new.clone()
+                .unwrap_or_else(|| coordinates.written[circle.centre][i].clone())
+        });
+        let written = across.map(|i| coordinates.written[circle.member][i].clone());
+        let direction: [f64; 2] = std::array::from_fn(|i| to_f64(&(&written[i] - &centre[i])));
+        let Some(at) = at_radius(&circle.radius, direction) else {
+            return;
+        };
+        let place: [Rational; 2] = std::array::from_fn(|i| &centre[i] + &at[i]);
+        let moved = |i: usize| to_f64(&(&place[i] - &written[i])).abs();
+        let error = |i: usize| coordinates.errors[circle.member][across[i]];
+        let most = 2.0 * error(0).hypot(error(1));
+        if moved(0).hypot(moved(1)) > most {
+            self.contradictory += 1;
+            return;
+        }
+        *self.relations.entry(RelationKind::OnCircle).or_default() += 1;
+        for (i, x) in across.into_iter().zip(place) {
+            coordinates.new[circle.member][i] = Some(x);
+        }
+    }
+
+    /// The tree with the new positions; `None` if no relation was destroyed.
+    pub fn recovery(self, tree: &Tree, rounding: Rounding) -> Option<Recovery> {
+        if self.relations.is_empty() {
+            return None;
+        }
+        let mut recovered = tree.clone();
+        let (mut moved, mut furthest) = (0, 0.0f64);
+        for ((id, placed), motion) in self.leaves.iter().zip(self.motions) {
+            let Some(motion) = motion.filter(|motion| *motion != placed.motion) else {
+                continue;
+            };
+            let by = motion.translation_f64() - placed.motion.translation_f64();
+            (moved, furthest) = (moved + 1, furthest.max(by.norm()));
+            let primitive = placed.primitive.clone();
+            recovered.nodes[id.index()] = TreeNode::Leaf(PlacedPrimitive { primitive, motion });
+        }
+        let counts = self.relations.into_iter();
+        Some(Recovery {
+            transforms: self.transforms,
+            tree: recovered,
+            rounding,
+            relations: counts
+                .map(|(kind, count)| RelationCount { kind, count })
+                .collect(),
+            contradictory: self.contradictory,
+            moved,
+            furthest,
+        })
+    }
+}

@@ -107,7 +107,7 @@ pub enum PrimitiveError {
 
 impl PrimitiveError {
     /// The invalid length.
-    pub fn dimension(self) -> Dimension {
+    pub(crate) fn dimension(self) -> Dimension {
         match self {
             Self::NotPositive(dimension) | Self::Negative(dimension) => dimension,
             Self::NoRadius => Dimension::Top,
@@ -184,7 +184,7 @@ impl Primitive {
     }
 
     /// Its lengths, in the order of its fields.
-    pub fn lengths(&self) -> Vec<&Rational> {
+    pub(crate) fn lengths(&self) -> Vec<&Rational> {
         match self {
             Self::Block { size } | Self::Wedge { size } => size.iter().collect(),
             Self::Cylinder { radius, height } => vec![radius, height],
@@ -195,7 +195,7 @@ impl Primitive {
     }
 
     /// This primitive with all lengths multiplied by `factor`, which must be greater than zero.
-    pub fn scaled(&self, factor: &Rational) -> Self {
+    pub(crate) fn scaled(&self, factor: &Rational) -> Self {
         let by = |length: &Rational| length * factor;
         match self {
             Self::Block { size } => Self::Block {
@@ -225,7 +225,7 @@ impl Primitive {
     ///
     /// Every primitive is symmetric about a plane of constant y, so its mirror image is a
     /// translated copy.
-    pub fn mirror_y(&self) -> Motion {
+    pub(crate) fn mirror_y(&self) -> Motion {
         match self {
             Self::Block { size } | Self::Wedge { size } => {
                 Motion::translation([Rational::ZERO, -&size[1], Rational::ZERO])

@@ -101,7 +101,7 @@ impl Mask {
     const SIGMAS: [f64; 2] = [0.375, 20.0];
 
     /// Its radius in pixels.
-    pub fn radius(self) -> usize {
+    pub(crate) fn radius(self) -> usize {
         match self {
             Self::Roberts | Self::Prewitt | Self::Sobel => 1,
             Self::Gaussian { sigma } => (3.0 * Self::usable(sigma)).ceil() as usize,

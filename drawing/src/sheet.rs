@@ -139,7 +139,7 @@ pub struct Scale {
 
 impl Scale {
     /// The quotient.
-    pub fn ratio(self) -> f64 {
+    pub(crate) fn ratio(self) -> f64 {
         self.drawn / self.of
     }
 

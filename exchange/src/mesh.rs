@@ -102,7 +102,7 @@ impl Facets {
     }
 
     /// The triangles of each solid.
-    pub fn solids(&self) -> impl Iterator<Item = &[Facet]> {
+    pub(crate) fn solids(&self) -> impl Iterator<Item = &[Facet]> {
         self.facets.chunk_by(|a, b| a.solid == b.solid)
     }
 

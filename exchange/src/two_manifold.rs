@@ -47,11 +47,11 @@ pub struct HalfEdge {
 #[derive(Clone, Debug)]
 pub struct SeamedFace {
     /// The face of the boundary that contains it.
-    pub source: FaceId,
+    pub(crate) source: FaceId,
     /// The surface, rotated so that angles are measured from the seam, with the window of the face.
-    pub window: ParameterWindow,
+    pub(crate) window: ParameterWindow,
     /// Whether the outward normal is the surface's own.
-    pub sense: Sense,
+    pub(crate) sense: Sense,
     /// The loops, the outer one first. The face is to the left as seen from outside.
     pub loops: Vec<Vec<HalfEdge>>,
 }

@@ -188,7 +188,7 @@ impl Motion {
     }
 
     /// Whether the rotation is the identity.
-    pub fn is_translation(&self) -> bool {
+    pub(crate) fn is_translation(&self) -> bool {
         self.rotation.is_none()
     }
 

@@ -52,7 +52,7 @@ pub struct Score {
 
 impl Score {
     /// Its value for a goal: greater is better.
-    pub fn value(&self, goal: Goal, radius: f64) -> f64 {
+    pub(crate) fn value(&self, goal: Goal, radius: f64) -> f64 {
         match goal {
             Goal::Features => self.expected,
             // The standard deviation of a point at the part's radius.

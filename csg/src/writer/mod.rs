@@ -21,7 +21,7 @@ use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
 /// The longest text, in bytes.
-pub const MAX_TEXT: usize = 1 << 30;
+pub(crate) const MAX_TEXT: usize = 1 << 30;
 
 /// Why a part was not written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -94,7 +94,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
 
     /// A locator for when the resolution is not known. Edges are assumed to have the rounding error
     /// of the part's `size`, and no path may pass between two edges whose ends do not coincide.
-    pub fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
+    pub(crate) fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
         let edges = brep.topology.edges_of(face);
         let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
         let apart = gaps.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
@@ -103,7 +103,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// The directed arcs of the boundary.
-    pub fn arcs(&self) -> &[DirectedArc<'a, N>] {
+    pub(crate) fn arcs(&self) -> &[DirectedArc<'a, N>] {
         &self.arcs.all
     }
 
@@ -124,7 +124,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// Classifies `p`, which is known not to be on the boundary.
-    pub fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
+    pub(crate) fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
             return PointLocation::Inside;
         }

@@ -11,7 +11,7 @@ pub mod assembly_error;
 pub mod boundary_input;
 pub mod bounding_box;
 pub mod check;
-pub mod cycle_basis;
+mod cycle_basis;
 mod end_gaps;
 pub mod face_integrals;
 pub mod locate;

@@ -15,7 +15,7 @@ pub fn surface<S: Serializer>(surface: &Surface, serializer: S) -> Result<S::Ok,
 }
 
 /// The JSON of a surface: its type, its frame and its parameters, as in [`Surface`].
-pub fn surface_value(surface: &Surface) -> Value {
+pub(crate) fn surface_value(surface: &Surface) -> Value {
     let name = surface.kind().name();
     let frame = surface.frame();
     match surface {
@@ -56,7 +56,7 @@ fn with(mut v: Value, more: &[(&str, f64)]) -> Value {
 }
 
 /// The JSON of a curve: its type and its parameters. [`Curve`] documents the point at a parameter.
-pub fn value(curve: &Curve) -> Value {
+pub(crate) fn value(curve: &Curve) -> Value {
     match curve {
         Curve::Line(c) => {
             json!({"type": "line", "origin": three(c.origin), "direction": three(c.direction)})

@@ -23,7 +23,7 @@ pub struct LimbPoint {
     /// surface, negative where it cuts it.
     pub distance: f64,
     /// Its derivative by the rotation of the part about its origin, in radians about the camera's
-    /// axes, and by the translation: the step of [`super::refine::moved`].
+    /// axes, and by the translation: the step of `refine::moved`.
     pub slope: Vector6<f64>,
 }
 

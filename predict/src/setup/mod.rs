@@ -21,7 +21,7 @@ use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-pub use setup_toml::SetupToml;
+use setup_toml::SetupToml;
 use std::fmt;
 use std::ops::Range;
 use viewpoint::Viewpoint;
@@ -147,7 +147,7 @@ impl<'de> Deserialize<'de> for Finish {
 impl Finish {
     /// The constants under light of a wavelength in nanometres; explicit constants hold for every
     /// wavelength.
-    pub fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
+    pub(crate) fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
         match self {
             Self::Named(name) => {
                 let known = Named::known(name).ok_or_else(|| SetupError::Material(name.clone()))?;
@@ -226,14 +226,14 @@ impl Conditions {
 
     /// The materials under light of a wavelength in nanometres: that of the part, and those of
     /// `surfaces`.
-    pub fn materials(&self, wavelength: f64) -> Result<Vec<Material>, SetupError> {
+    pub(crate) fn materials(&self, wavelength: f64) -> Result<Vec<Material>, SetupError> {
         let others = self.surfaces.iter().map(|surface| &surface.material);
         let all = std::iter::once(&self.material).chain(others);
         all.map(|finish| finish.material(wavelength)).collect()
     }
 
     /// Checks that the values of lights are in their ranges, and those of the materials under them.
-    pub fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
+    pub(crate) fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
         for (i, light) in lights.iter().enumerate() {
             light.validate(i)?;
             self.materials(light.wavelength())?;
@@ -285,7 +285,7 @@ impl Setup {
 }
 
 /// The greatest number of lights: the set that reaches a region is stored as bits.
-pub const MAX_LIGHTS: usize = 64;
+pub(crate) const MAX_LIGHTS: usize = 64;
 
 /// Checks that a number is finite and not negative.
 pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {

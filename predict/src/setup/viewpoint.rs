@@ -34,7 +34,7 @@ pub struct Viewpoint {
 
 impl Viewpoint {
     /// A camera at `eye` that looks at `target`.
-    pub fn looking(eye: Point3<f64>, target: Point3<f64>, up: Vector3<f64>) -> Self {
+    pub(crate) fn looking(eye: Point3<f64>, target: Point3<f64>, up: Vector3<f64>) -> Self {
         Self {
             eye: Some(eye.into()),
             target: Some(target.into()),
@@ -44,7 +44,7 @@ impl Viewpoint {
     }
 
     /// Checks that it is one of the two kinds, and that its values are in their ranges.
-    pub fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
+    pub(crate) fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
         // Any centre of a part is valid, except the eye itself.
         let [x, y, z] = self.eye.unwrap_or_default();
         self.matrices(sensor, &Point3::new(x + 1.0 + x.abs(), y, z))
@@ -122,11 +122,11 @@ impl Viewpoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrices {
     /// K, the camera matrix.
-    pub k: Matrix3<f64>,
+    pub(crate) k: Matrix3<f64>,
     /// R, the rotation into the camera's frame: x right, y down, z into the scene.
-    pub r: Matrix3<f64>,
+    pub(crate) r: Matrix3<f64>,
     /// t, the part's origin in the camera's frame.
-    pub t: Vector3<f64>,
+    pub(crate) t: Vector3<f64>,
 }
 
 impl Matrices {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The greatest number of points: far more views than any model has.
-pub const MAX_POINTS: usize = 1 << 22;
+pub(crate) const MAX_POINTS: usize = 1 << 22;
 
 /// The lattice of points on the sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

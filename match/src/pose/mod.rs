@@ -3,7 +3,6 @@
 
 pub(crate) mod circle;
 mod equations;
-pub mod limb;
 pub(crate) mod p2p2l;
 pub mod p3l;
 pub mod p3p;

@@ -24,6 +24,7 @@ pub(crate) const MAX_MOTION_BITS: usize = 1 << 15;
 
 /// A tree exceeds a stated limit, or is built from another builder's solids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TreeError {
     /// Parts used several times are copied, and there are too many copies.
     #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]

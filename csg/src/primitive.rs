@@ -90,6 +90,7 @@ impl fmt::Display for Dimension {
 
 /// Why a primitive with these lengths is not a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PrimitiveError {
     /// A length must be greater than zero.
     #[error("the {0} must be greater than zero")]

@@ -63,6 +63,7 @@ pub enum Thinning {
 
 /// Why the parameters of a detector are invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DetectorError {
     /// A value is not a number, or out of its range.
     #[error("`{name}` is {}, and should be {range}", number(*value))]

@@ -206,6 +206,7 @@ impl SheetOptions {
 
 /// Why views cannot be placed on a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SheetError {
     /// There is no room for them.
     #[error("at {scale} the views take {} mm by {} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them; use a larger `--paper`, a smaller `--scale`, or no `--scale`", number(width.round()), number(height.round()), paper = paper.name())]

@@ -53,6 +53,7 @@ pub struct Facets {
 
 /// Why a part cannot be written as triangles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]

@@ -46,6 +46,7 @@ pub struct StepOptions {
 
 /// Why a boundary cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]

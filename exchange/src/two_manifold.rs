@@ -71,6 +71,7 @@ pub struct TwoManifold<'a> {
 
 /// Why a boundary cannot be given seams.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SeamError {
     /// Material ends in a wall of zero thickness: a face has a crack along an edge, and no loop of
     /// other kernels passes twice through one place.

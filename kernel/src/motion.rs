@@ -25,6 +25,7 @@ pub struct Motion {
 
 /// Why a motion could not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MotionError {
     /// The axis has length zero and therefore no direction.
     #[error("an axis of length zero")]

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 /// Why a camera cannot have taken a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PinholeError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]

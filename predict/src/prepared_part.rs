@@ -19,6 +19,7 @@ const POINTS: usize = 8;
 
 /// Why a part cannot be seen at all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SubjectError {
     /// It has no faces.
     #[error("the part is empty: there is nothing to be seen")]

@@ -25,6 +25,7 @@ pub(crate) const MAX_TEXT: usize = 1 << 30;
 
 /// Why a part was not written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// `.padl` cannot represent the empty solid.
     #[error("`.padl` has no word for the empty solid")]

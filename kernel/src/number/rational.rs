@@ -14,6 +14,7 @@ pub const MAX_DIGITS: usize = 1000;
 
 /// Why a text is not an exact number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecimalError {
     /// The text is not a decimal literal.
     #[error("not a decimal number")]

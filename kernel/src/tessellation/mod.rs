@@ -67,6 +67,7 @@ pub struct Mesh {
 
 /// Why a boundary cannot be tessellated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TessellationError {
     /// The chords of a face's edges cross, however finely the edges are divided.
     #[error("the edges of face {} are too close to one another for triangles", face.0)]

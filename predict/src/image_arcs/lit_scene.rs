@@ -18,6 +18,7 @@ use std::collections::HashMap;
 
 /// Why nothing can be predicted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StageError {
     /// The setup cannot be used.
     #[error(transparent)]
@@ -133,7 +134,7 @@ fn no_view(table: &str, place: &str, error: &ViewError) -> SetupError {
     match error {
         ViewError::EyeInside(_) => SetupError::value(key, INSIDE),
         ViewError::EyeFar { .. } => SetupError::value(key, format!("is too far: {error}")),
-        ViewError::Limb(_) => SetupError::value(table, format!("has no view of the part: {error}")),
+        _ => SetupError::value(table, format!("has no view of the part: {error}")),
     }
 }
 

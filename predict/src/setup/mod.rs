@@ -28,6 +28,7 @@ use viewpoint::Viewpoint;
 
 /// Why a setup cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupError {
     /// The text is not that of a setup.
     #[error(transparent)]

@@ -43,6 +43,7 @@ pub enum SphereSampling {
 
 /// Why there are no points.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SphereError {
     /// The requested number of points is zero.
     #[error("the number of points must be at least 1")]

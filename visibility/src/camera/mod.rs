@@ -13,6 +13,7 @@ use std::ops::Range;
 
 /// Why a camera cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CameraError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]

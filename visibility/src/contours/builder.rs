@@ -31,6 +31,7 @@ use std::time::Instant;
 
 /// Why there are no contours.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewError {
     /// The eye lies in the material.
     #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]

@@ -59,6 +59,7 @@ pub struct SurfaceIntersection<N: Float = f64> {
 
 /// Why an intersection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IntersectionError {
     /// The curve has a singular point of an unknown kind.
     #[error("two surfaces intersect in a curve with a singular point of an unknown kind, {0}")]

@@ -119,18 +119,27 @@ impl PrimitiveError {
 
 impl Primitive {
     /// A block with edges `size`.
+    ///
+    /// # Errors
+    /// An edge is not greater than zero.
     pub fn block(size: [Rational; 3]) -> Result<Self, PrimitiveError> {
         check_size(&size)?;
         Ok(Self::Block { size })
     }
 
     /// A wedge: half of a block with edges `size`.
+    ///
+    /// # Errors
+    /// An edge is not greater than zero.
     pub fn wedge(size: [Rational; 3]) -> Result<Self, PrimitiveError> {
         check_size(&size)?;
         Ok(Self::Wedge { size })
     }
 
     /// A cylinder.
+    ///
+    /// # Errors
+    /// The radius or the height is not greater than zero.
     pub fn cylinder(radius: Rational, height: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Radius)?;
         positive(&height, Dimension::Height)?;
@@ -138,12 +147,18 @@ impl Primitive {
     }
 
     /// A cone with its apex at `height`.
+    ///
+    /// # Errors
+    /// The radius or the height is not greater than zero.
     pub fn cone(radius: Rational, height: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Base)?;
         Self::frustum(radius, Rational::ZERO, height)
     }
 
     /// A frustum; a cylinder where the radii are equal.
+    ///
+    /// # Errors
+    /// A radius is negative, both are zero, or the height is not greater than zero.
     pub fn frustum(
         base: Rational,
         top: Rational,
@@ -169,12 +184,18 @@ impl Primitive {
     }
 
     /// A sphere.
+    ///
+    /// # Errors
+    /// The radius is not greater than zero.
     pub fn sphere(radius: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Radius)?;
         Ok(Self::Sphere { radius })
     }
 
     /// A ring torus.
+    ///
+    /// # Errors
+    /// A radius is not greater than zero, or the minor one is not less than the major one.
     pub fn torus(major: Rational, minor: Rational) -> Result<Self, PrimitiveError> {
         positive(&major, Dimension::Major)?;
         positive(&minor, Dimension::Minor)?;

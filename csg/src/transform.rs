@@ -154,7 +154,10 @@ impl Transform {
         Some(fewer)
     }
 
-    /// Appends a step. Refuses a rotation about a zero axis.
+    /// Appends a step.
+    ///
+    /// # Errors
+    /// The step is a rotation whose axis is zero or beyond the range of f64. It is not appended.
     pub fn push(&mut self, step: TransformStep) -> Result<(), MotionError> {
         self.motion = self.motion.then(&step.motion()?);
         self.steps.push(step);

@@ -145,6 +145,9 @@ impl Default for Detector {
 
 impl Detector {
     /// Checks that all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is not a number or out of its range, or the low threshold is above the threshold.
     pub fn validate(&self) -> Result<(), DetectorError> {
         let positive = "positive and finite";
         let not_negative = "zero or more, and finite";

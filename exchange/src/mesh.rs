@@ -83,6 +83,10 @@ pub enum MeshError {
 
 impl Facets {
     /// The triangles of a boundary; `resolution` is the part's.
+    ///
+    /// # Errors
+    /// The boundary is empty or cannot be tessellated, or triangles touch where their pairing is
+    /// ambiguous or numbers are too coarse.
     pub fn new(brep: &Brep, accuracy: &Accuracy, resolution: f64) -> Result<Self, MeshError> {
         if brep.topology.solids.is_empty() {
             return Err(MeshError::Empty);

@@ -85,6 +85,10 @@ pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
 const NEARER: f64 = 64.0;
 
 /// The text of a file.
+///
+/// # Errors
+/// The boundary is empty, a face could not be cut by a seam, a curve takes too many pieces of a
+/// spline, or something is as thin as the tolerance of other kernels.
 pub fn write(brep: &Brep, options: &StepOptions) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
         return Err(StepError::Empty);

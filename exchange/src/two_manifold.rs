@@ -106,6 +106,10 @@ pub enum SeamError {
 
 impl<'a> TwoManifold<'a> {
     /// The boundary with seams; `resolution` is the part's.
+    ///
+    /// # Errors
+    /// A wall has no thickness, no seam could be laid through a face, or the loops of a face do not
+    /// determine which encloses which.
     pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SeamError> {
         let pairs = pairs::Pairs::new(brep);
         if let Some(edge) = pairs.crack(brep) {

@@ -60,6 +60,9 @@ impl Motion {
     /// Multiples of 90 degrees about a coordinate axis are exact. Any other angle is replaced by
     /// the nearest one with a rational quaternion `(1, s a)`, where `a` is the axis as given and `s
     /// = tan(angle / 2) / |a|` is rounded to an f64. The axis itself is kept exactly.
+    ///
+    /// # Errors
+    /// The axis is zero, or beyond the range of f64.
     pub fn rotation(axis: [Rational; 3], degrees: &Rational) -> Result<Self, MotionError> {
         let axis = unit_if_rational(axis)?;
         let angle = reduce_degrees(degrees);

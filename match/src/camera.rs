@@ -221,6 +221,9 @@ pub struct Pinhole {
 
 impl Pinhole {
     /// The camera of a matrix K.
+    ///
+    /// # Errors
+    /// The matrix is not that of a camera, or its focal lengths or skew are those of no sensor.
     pub fn new(k: &Matrix3<f64>) -> Result<Self, PinholeError> {
         if k.iter().any(|v| !v.is_finite()) {
             return Err(PinholeError::Matrix("has a value that is no number"));

@@ -44,6 +44,9 @@ pub struct PreparedPart<'a> {
 
 impl<'a> PreparedPart<'a> {
     /// The part with this boundary and resolution.
+    ///
+    /// # Errors
+    /// The part has no faces.
     pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SubjectError> {
         if brep.topology.faces.is_empty() {
             return Err(SubjectError::Empty);

@@ -10,6 +10,9 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 /// Writes a surface with its exact parameters.
+///
+/// # Errors
+/// The serializer fails.
 pub fn surface<S: Serializer>(surface: &Surface, serializer: S) -> Result<S::Ok, S::Error> {
     surface_value(surface).serialize(serializer)
 }
@@ -34,6 +37,9 @@ pub(crate) fn surface_value(surface: &Surface) -> Value {
 }
 
 /// Writes a curve with its exact parameters.
+///
+/// # Errors
+/// The serializer fails.
 pub fn curve<S: Serializer>(curve: &Curve, serializer: S) -> Result<S::Ok, S::Error> {
     value(curve).serialize(serializer)
 }

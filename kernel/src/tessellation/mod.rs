@@ -102,6 +102,10 @@ const DIVISIONS: usize = 1 << 16;
 const ROUNDS: usize = 40;
 
 /// The mesh of a boundary; `resolution` is the part's.
+///
+/// # Errors
+/// The edges of a face are too close for triangles or do not determine its inside, or the accuracy
+/// takes too many points.
 pub fn tessellate(
     brep: &Brep,
     accuracy: &Accuracy,

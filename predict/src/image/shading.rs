@@ -30,6 +30,9 @@ pub struct Finishes {
 
 impl Finishes {
     /// The materials of the faces of a part under conditions.
+    ///
+    /// # Errors
+    /// A surface of the conditions names a face that the part does not have.
     pub fn new(subject: &PreparedPart<'_>, conditions: &Conditions) -> Result<Self, StageError> {
         let count = subject.brep.topology.faces.len();
         let mut by_face = vec![0; count];

@@ -75,6 +75,10 @@ pub struct DetectionOutcome {
 ///
 /// `finishes` are those of the setup's conditions, where they are already known, as for many
 /// setups.
+///
+/// # Errors
+/// The setup cannot be used, the camera or a light has no view of the part, or the image does not
+/// show it.
 pub fn with_draft<T>(
     subject: &PreparedPart<'_>,
     finishes: Option<&Finishes>,

@@ -216,6 +216,9 @@ impl Default for Conditions {
 
 impl Conditions {
     /// Whether all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is out of its range, or a material is unknown.
     pub fn validate(&self) -> Result<(), SetupError> {
         self.sensor.validate()?;
         at_least_zero("ambient", self.ambient)?;
@@ -257,6 +260,9 @@ pub struct Setup {
 }
 
 /// The detector that a TOML text describes: the keys of a setup's `[detector]`.
+///
+/// # Errors
+/// The text is not that of a detector, or a value is out of its range.
 pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
     let detector: Detector = Document::from_toml(text)?.read()?;
     detector.validate()?;
@@ -265,11 +271,18 @@ pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
 
 impl Setup {
     /// The setup that a TOML text describes.
+    ///
+    /// # Errors
+    /// The text is not that of a setup, or the setup is invalid: see [`Setup::validate`].
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
         SetupToml::from_toml(text)?.setup()
     }
 
     /// Whether all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is out of its range, a material is unknown or its constants are not known for a
+    /// light, or there are too many lights or none.
     pub fn validate(&self) -> Result<(), SetupError> {
         self.conditions.validate()?;
         self.camera.validate(&self.conditions.sensor)?;

@@ -52,6 +52,10 @@ impl Viewpoint {
     }
 
     /// The matrices of the camera for a part with this centre.
+    ///
+    /// # Errors
+    /// Keys do not go together or are missing, a value is out of its range, or the matrices are not
+    /// those of a camera.
     pub fn matrices(&self, sensor: &Sensor, centre: &Point3<f64>) -> Result<Matrices, SetupError> {
         let strangers = match self.eye {
             Some(_) => [
@@ -131,6 +135,9 @@ pub struct Matrices {
 
 impl Matrices {
     /// The camera of the matrices.
+    ///
+    /// # Errors
+    /// The matrices are not those of a camera.
     pub fn camera(&self) -> Result<ViewCamera, SetupError> {
         let Self { k, r, t } = *self;
         ViewCamera::new(CameraModel::Matrices {

@@ -72,6 +72,10 @@ pub enum SphereError {
 
 /// The points of a lattice that lie in any of the cones, or on the whole sphere if there is no
 /// cone: unit vectors, in an order that depends only on the request.
+///
+/// # Errors
+/// The number of points or an angle is out of its range, a cone has no direction, or the cones
+/// contain no point of the lattice.
 pub fn points(
     lattice: Lattice,
     sampling: SphereSampling,

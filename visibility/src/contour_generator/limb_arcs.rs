@@ -43,6 +43,9 @@ pub struct LimbArcs {
 }
 
 /// Trims the limbs of every surface by the faces on it.
+///
+/// # Errors
+/// A limb of a torus could not be resolved.
 pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<LimbArcs, Unresolved> {
     let brep = scene.brep;
     let mut known: Vec<Option<Vec<Limb>>> = vec![None; brep.geometry.surfaces.len()];

@@ -113,6 +113,9 @@ impl<N: Float> SurfaceIntersection<N> {
 }
 
 /// The intersection curves of two distinct surfaces within the extent.
+///
+/// # Errors
+/// The intersection has a cusp or a singular point of an unknown kind.
 pub fn intersect<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,

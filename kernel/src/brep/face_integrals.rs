@@ -105,6 +105,9 @@ impl<N: Float> FaceIntegrals<N> {
     }
 
     /// The signed volume that a shell encloses.
+    ///
+    /// # Panics
+    /// The boundary has no such shell.
     pub fn enclosed(&self, brep: &Brep<N>, shell: ShellId) -> ShellVolume<N> {
         let faces = &brep.topology.shells[shell.index()].faces;
         let amid = &self.shells[shell.index()];

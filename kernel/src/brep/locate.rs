@@ -81,6 +81,9 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// The locator of a face of a boundary representation.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn from_face(brep: &'a Brep<N>, face: FaceId, resolution: N) -> Self {
         let coedges = brep.topology.coedges_of(face);
         let arcs = coedges.map(|c| DirectedArc::new(brep, c));
@@ -431,12 +434,18 @@ impl<'a, N: Float> Locator<'a, N> {
     }
 
     /// The locator of one face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn face(&self, face: FaceId) -> &FaceLocator<'a, N> {
         self.faces[face.index()]
             .get_or_init(|| FaceLocator::from_face(self.brep, face, self.resolution))
     }
 
     /// Classifies `p`, a point of the face's surface, relative to the face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn place(&self, face: FaceId, p: &Point3<N>) -> PointLocation {
         self.face(face).place(p)
     }

@@ -37,6 +37,9 @@ pub struct DirectedArc<'a, N: Float = f64> {
 
 impl<'a, N: Float> DirectedArc<'a, N> {
     /// A coedge of a boundary representation.
+    ///
+    /// # Panics
+    /// The boundary has no such coedge.
     pub fn new(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
         let coedge = brep.topology.coedge(coedge);
         Self {

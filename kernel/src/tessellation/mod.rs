@@ -181,6 +181,9 @@ impl Mesh {
 
     /// The outward unit normals of the face at the corners of a triangle. At a cone's apex, that of
     /// the ruling through the middle of the opposite side.
+    ///
+    /// # Panics
+    /// The mesh has no such points, or the boundary no such face.
     pub fn normals(&self, brep: &Brep, triangle: &Triangle) -> [Vector3<f64>; 3] {
         let corners = triangle.corners.map(|c| self.points[c as usize]);
         [0, 1, 2].map(|k: usize| {

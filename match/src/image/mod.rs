@@ -44,6 +44,9 @@ impl ImageFeatures {
     }
 
     /// The ends of a segment; of a whole ellipse those of its longer axis.
+    ///
+    /// # Panics
+    /// The image has no such segment.
     pub fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         match self.detection.segments[segment as usize].shape {
             SegmentShape::Line { ends } | SegmentShape::Arc { ends, .. } => ends,

@@ -17,13 +17,14 @@ use crate::transform::{Transform, TransformStep};
 use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
 
 /// The largest number of leaves a tree may have.
-pub const MAX_LEAVES: u64 = 1_000_000;
+pub(crate) const MAX_LEAVES: u64 = 1_000_000;
 
 /// The largest length in bits of a number in a leaf's motion.
-pub const MAX_MOTION_BITS: usize = 1 << 15;
+pub(crate) const MAX_MOTION_BITS: usize = 1 << 15;
 
 /// A tree exceeds a stated limit, or is built from another builder's solids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TreeError {
     /// Parts used several times are copied, and there are too many copies.
     #[error("{leaves} primitives, with every use of a part counted; the limit is {MAX_LEAVES}")]

@@ -90,6 +90,7 @@ impl fmt::Display for Dimension {
 
 /// Why a primitive with these lengths is not a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PrimitiveError {
     /// A length must be greater than zero.
     #[error("the {0} must be greater than zero")]
@@ -107,7 +108,7 @@ pub enum PrimitiveError {
 
 impl PrimitiveError {
     /// The invalid length.
-    pub fn dimension(self) -> Dimension {
+    pub(crate) fn dimension(self) -> Dimension {
         match self {
             Self::NotPositive(dimension) | Self::Negative(dimension) => dimension,
             Self::NoRadius => Dimension::Top,
@@ -118,18 +119,27 @@ impl PrimitiveError {
 
 impl Primitive {
     /// A block with edges `size`.
+    ///
+    /// # Errors
+    /// An edge is not greater than zero.
     pub fn block(size: [Rational; 3]) -> Result<Self, PrimitiveError> {
         check_size(&size)?;
         Ok(Self::Block { size })
     }
 
     /// A wedge: half of a block with edges `size`.
+    ///
+    /// # Errors
+    /// An edge is not greater than zero.
     pub fn wedge(size: [Rational; 3]) -> Result<Self, PrimitiveError> {
         check_size(&size)?;
         Ok(Self::Wedge { size })
     }
 
     /// A cylinder.
+    ///
+    /// # Errors
+    /// The radius or the height is not greater than zero.
     pub fn cylinder(radius: Rational, height: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Radius)?;
         positive(&height, Dimension::Height)?;
@@ -137,12 +147,18 @@ impl Primitive {
     }
 
     /// A cone with its apex at `height`.
+    ///
+    /// # Errors
+    /// The radius or the height is not greater than zero.
     pub fn cone(radius: Rational, height: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Base)?;
         Self::frustum(radius, Rational::ZERO, height)
     }
 
     /// A frustum; a cylinder where the radii are equal.
+    ///
+    /// # Errors
+    /// A radius is negative, both are zero, or the height is not greater than zero.
     pub fn frustum(
         base: Rational,
         top: Rational,
@@ -168,12 +184,18 @@ impl Primitive {
     }
 
     /// A sphere.
+    ///
+    /// # Errors
+    /// The radius is not greater than zero.
     pub fn sphere(radius: Rational) -> Result<Self, PrimitiveError> {
         positive(&radius, Dimension::Radius)?;
         Ok(Self::Sphere { radius })
     }
 
     /// A ring torus.
+    ///
+    /// # Errors
+    /// A radius is not greater than zero, or the minor one is not less than the major one.
     pub fn torus(major: Rational, minor: Rational) -> Result<Self, PrimitiveError> {
         positive(&major, Dimension::Major)?;
         positive(&minor, Dimension::Minor)?;
@@ -184,7 +206,7 @@ impl Primitive {
     }
 
     /// Its lengths, in the order of its fields.
-    pub fn lengths(&self) -> Vec<&Rational> {
+    pub(crate) fn lengths(&self) -> Vec<&Rational> {
         match self {
             Self::Block { size } | Self::Wedge { size } => size.iter().collect(),
             Self::Cylinder { radius, height } => vec![radius, height],
@@ -195,7 +217,7 @@ impl Primitive {
     }
 
     /// This primitive with all lengths multiplied by `factor`, which must be greater than zero.
-    pub fn scaled(&self, factor: &Rational) -> Self {
+    pub(crate) fn scaled(&self, factor: &Rational) -> Self {
         let by = |length: &Rational| length * factor;
         match self {
             Self::Block { size } => Self::Block {
@@ -225,7 +247,7 @@ impl Primitive {
     ///
     /// Every primitive is symmetric about a plane of constant y, so its mirror image is a
     /// translated copy.
-    pub fn mirror_y(&self) -> Motion {
+    pub(crate) fn mirror_y(&self) -> Motion {
         match self {
             Self::Block { size } | Self::Wedge { size } => {
                 Motion::translation([Rational::ZERO, -&size[1], Rational::ZERO])

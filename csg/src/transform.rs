@@ -22,7 +22,7 @@ pub enum TransformStep {
 
 impl TransformStep {
     /// A rotation about a coordinate axis, given by its index.
-    pub fn about(axis: usize, degrees: Rational) -> Self {
+    pub(crate) fn about(axis: usize, degrees: Rational) -> Self {
         Self::Turn {
             axis: along(axis, Rational::ONE),
             degrees,
@@ -30,7 +30,7 @@ impl TransformStep {
     }
 
     /// The motion of this step.
-    pub fn motion(&self) -> Result<Motion, MotionError> {
+    pub(crate) fn motion(&self) -> Result<Motion, MotionError> {
         match self {
             Self::Shift(offset) => Ok(Motion::translation(offset.clone())),
             Self::Turn { axis, degrees } => Motion::rotation(axis.clone(), degrees),
@@ -98,7 +98,7 @@ impl Transform {
     }
 
     /// A single translation.
-    pub fn shift(offset: [Rational; 3]) -> Self {
+    pub(crate) fn shift(offset: [Rational; 3]) -> Self {
         let motion = Motion::translation(offset.clone());
         let steps = vec![TransformStep::Shift(offset)];
         Self { steps, motion }
@@ -106,7 +106,7 @@ impl Transform {
 
     /// The quarter turns about coordinate axes that compose to a matrix of zeros, ones and minus
     /// ones; `None` for another matrix and for a mirror.
-    pub fn quarter_turns(matrix: &RationalMatrix) -> Option<Self> {
+    pub(crate) fn quarter_turns(matrix: &RationalMatrix) -> Option<Self> {
         // Every such matrix is a rotation about x, then one about y, then one about z.
         let quarters = || [0, 90, 180, 270];
         let angles = quarters().into_iter().flat_map(|x| {
@@ -154,7 +154,10 @@ impl Transform {
         Some(fewer)
     }
 
-    /// Appends a step. Refuses a rotation about a zero axis.
+    /// Appends a step.
+    ///
+    /// # Errors
+    /// The step is a rotation whose axis is zero or beyond the range of f64. It is not appended.
     pub fn push(&mut self, step: TransformStep) -> Result<(), MotionError> {
         self.motion = self.motion.then(&step.motion()?);
         self.steps.push(step);
@@ -162,7 +165,7 @@ impl Transform {
     }
 
     /// The composition: these steps first, then the others.
-    pub fn then(mut self, later: Self) -> Self {
+    pub(crate) fn then(mut self, later: Self) -> Self {
         self.motion = self.motion.then(&later.motion);
         self.steps.extend(later.steps);
         self
@@ -177,12 +180,12 @@ impl Transform {
     }
 
     /// The composition of the steps.
-    pub fn motion(&self) -> &Motion {
+    pub(crate) fn motion(&self) -> &Motion {
         &self.motion
     }
 
     /// The steps, in order.
-    pub fn steps(&self) -> &[TransformStep] {
+    pub(crate) fn steps(&self) -> &[TransformStep] {
         &self.steps
     }
 

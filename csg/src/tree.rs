@@ -13,7 +13,7 @@ pub struct NodeId(pub(crate) usize);
 
 impl NodeId {
     /// The node's index among [`Tree::nodes`].
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0
     }
 }

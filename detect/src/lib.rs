@@ -3,7 +3,7 @@
 //!
 //! The steps: [gradient masks](Mask) (ch. 7), [thinning](Thinning) (ch. 6), hysteresis (Canny
 //! 1986), linking of pixels to [chains](EdgeChain) (ch. 11), splitting of chains at corners (Ramer
-//! 1972), and [fits](fit) of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
+//! 1972), and fits of lines and ellipses to the pieces (ch. 11, Fitzgibbon 1999).
 //!
 //! No step uses a pixel outside the [`PixelMask`]. So an image of which little is known gives the
 //! same edges as the whole one wherever [`Detector::radius`] pixels around them are known.
@@ -11,7 +11,7 @@
 mod corners;
 mod detection;
 mod detector;
-pub mod fit;
+mod fit;
 mod gradient;
 mod grey;
 mod joining;

@@ -63,6 +63,7 @@ pub enum Thinning {
 
 /// Why the parameters of a detector are invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DetectorError {
     /// A value is not a number, or out of its range.
     #[error("`{name}` is {}, and should be {range}", number(*value))]
@@ -101,7 +102,7 @@ impl Mask {
     const SIGMAS: [f64; 2] = [0.375, 20.0];
 
     /// Its radius in pixels.
-    pub fn radius(self) -> usize {
+    pub(crate) fn radius(self) -> usize {
         match self {
             Self::Roberts | Self::Prewitt | Self::Sobel => 1,
             Self::Gaussian { sigma } => (3.0 * Self::usable(sigma)).ceil() as usize,
@@ -144,6 +145,9 @@ impl Default for Detector {
 
 impl Detector {
     /// Checks that all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is not a number or out of its range, or the low threshold is above the threshold.
     pub fn validate(&self) -> Result<(), DetectorError> {
         let positive = "positive and finite";
         let not_negative = "zero or more, and finite";

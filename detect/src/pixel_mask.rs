@@ -33,7 +33,8 @@ impl PixelMask {
 
     /// The pixels that are set in `width * height` values, row by row; missing values are unknown
     /// pixels.
-    pub fn of_mask(width: usize, height: usize, mask: &[bool]) -> Self {
+    #[cfg(test)]
+    pub(crate) fn of_mask(width: usize, height: usize, mask: &[bool]) -> Self {
         let mut domain = Self::empty(width);
         for y in 0..height {
             let start = (y * width).min(mask.len());
@@ -98,7 +99,8 @@ impl PixelMask {
     }
 
     /// Whether the pixel in column x and row y is known.
-    pub fn contains(&self, x: usize, y: usize) -> bool {
+    #[cfg(test)]
+    pub(crate) fn contains(&self, x: usize, y: usize) -> bool {
         let spans = self.spans(y);
         let next = spans.partition_point(|r| r.end as usize <= x);
         spans.get(next).is_some_and(|r| r.start as usize <= x)
@@ -116,7 +118,7 @@ impl PixelMask {
 
     /// The pixels whose whole square of 2 r + 1 pixels a side is known (erosion, Haralick & Shapiro
     /// ch. 5); pixels beyond the image are not known.
-    pub fn eroded(&self, radius: usize) -> Self {
+    pub(crate) fn eroded(&self, radius: usize) -> Self {
         if radius == 0 {
             return self.clone();
         }

@@ -18,7 +18,7 @@ pub struct Workspace {
 
 impl Workspace {
     /// An empty workspace; it grows to the size of the images that it is used on.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::default()
     }
 

@@ -44,6 +44,10 @@ impl StandardView {
 
     /// The camera of the view of a part about its middle, which is the origin of the image; `size`
     /// is any length of the part's order.
+    ///
+    /// # Errors
+    /// `middle` or `size` is not finite or beyond 1e100, or `size` is so small that the eye is in
+    /// the middle.
     pub fn camera(self, middle: Point3<f64>, size: f64) -> Result<ViewCamera, CameraError> {
         let (from, up) = match self {
             Self::Front => (-Vector3::y(), Vector3::z()),
@@ -139,7 +143,7 @@ pub struct Scale {
 
 impl Scale {
     /// The quotient.
-    pub fn ratio(self) -> f64 {
+    pub(crate) fn ratio(self) -> f64 {
         self.drawn / self.of
     }
 
@@ -206,6 +210,7 @@ impl SheetOptions {
 
 /// Why views cannot be placed on a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SheetError {
     /// There is no room for them.
     #[error("at {scale} the views take {} mm by {} mm, and {paper} has {room_width:.0} mm by {room_height:.0} mm for them; use a larger `--paper`, a smaller `--scale`, or no `--scale`", number(width.round()), number(height.round()), paper = paper.name())]
@@ -315,6 +320,10 @@ struct Fit {
 
 impl Sheet {
     /// Places views on a paper. A view without a name must be the only one.
+    ///
+    /// # Errors
+    /// The paper has no room for the views at the requested scale, a scale is requested for a view
+    /// in perspective, or the views are too small or too large for any scale.
     pub fn new(views: Vec<SheetView>, options: SheetOptions) -> Result<Self, SheetError> {
         let cell = |view: Option<StandardView>| view.map_or([0, 0], |v| options.angle.cell(v));
         let mut resolutions: [Bands; 2] = Default::default();

@@ -53,6 +53,7 @@ pub struct Facets {
 
 /// Why a part cannot be written as triangles.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]
@@ -82,6 +83,10 @@ pub enum MeshError {
 
 impl Facets {
     /// The triangles of a boundary; `resolution` is the part's.
+    ///
+    /// # Errors
+    /// The boundary is empty or cannot be tessellated, or triangles touch where their pairing is
+    /// ambiguous or numbers are too coarse.
     pub fn new(brep: &Brep, accuracy: &Accuracy, resolution: f64) -> Result<Self, MeshError> {
         if brep.topology.solids.is_empty() {
             return Err(MeshError::Empty);
@@ -102,7 +107,7 @@ impl Facets {
     }
 
     /// The triangles of each solid.
-    pub fn solids(&self) -> impl Iterator<Item = &[Facet]> {
+    pub(crate) fn solids(&self) -> impl Iterator<Item = &[Facet]> {
         self.facets.chunk_by(|a, b| a.solid == b.solid)
     }
 

@@ -37,6 +37,7 @@ pub struct BezierSegments {
 
 /// Why a curve cannot be approximated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SplineError {
     /// It needs too many pieces.
     #[error(

@@ -47,6 +47,7 @@ pub struct StepOptions {
 
 /// Why a boundary cannot be written.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// There is no solid.
     #[error("the part is empty: there is no solid to write")]
@@ -85,6 +86,10 @@ pub const ACCURACY: f64 = 1.0 / 1_000_000.0;
 const NEARER: f64 = 64.0;
 
 /// The text of a file.
+///
+/// # Errors
+/// The boundary is empty, a face could not be cut by a seam, a curve takes too many pieces of a
+/// spline, or something is as thin as the tolerance of other kernels.
 pub fn write(brep: &Brep, options: &StepOptions) -> Result<String, StepError> {
     if brep.topology.solids.is_empty() {
         return Err(StepError::Empty);

@@ -47,11 +47,11 @@ pub struct HalfEdge {
 #[derive(Clone, Debug)]
 pub struct SeamedFace {
     /// The face of the boundary that contains it.
-    pub source: FaceId,
+    pub(crate) source: FaceId,
     /// The surface, rotated so that angles are measured from the seam, with the window of the face.
-    pub window: ParameterWindow,
+    pub(crate) window: ParameterWindow,
     /// Whether the outward normal is the surface's own.
-    pub sense: Sense,
+    pub(crate) sense: Sense,
     /// The loops, the outer one first. The face is to the left as seen from outside.
     pub loops: Vec<Vec<HalfEdge>>,
 }
@@ -71,6 +71,7 @@ pub struct TwoManifold<'a> {
 
 /// Why a boundary cannot be given seams.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SeamError {
     /// Material ends in a wall of zero thickness: a face has a crack along an edge, and no loop of
     /// other kernels passes twice through one place.
@@ -105,6 +106,10 @@ pub enum SeamError {
 
 impl<'a> TwoManifold<'a> {
     /// The boundary with seams; `resolution` is the part's.
+    ///
+    /// # Errors
+    /// A wall has no thickness, no seam could be laid through a face, or the loops of a face do not
+    /// determine which encloses which.
     pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SeamError> {
         let pairs = pairs::Pairs::new(brep);
         if let Some(edge) = pairs.crack(brep) {

@@ -25,6 +25,7 @@ pub struct Motion {
 
 /// Why a motion could not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MotionError {
     /// The axis has length zero and therefore no direction.
     #[error("an axis of length zero")]
@@ -59,6 +60,9 @@ impl Motion {
     /// Multiples of 90 degrees about a coordinate axis are exact. Any other angle is replaced by
     /// the nearest one with a rational quaternion `(1, s a)`, where `a` is the axis as given and `s
     /// = tan(angle / 2) / |a|` is rounded to an f64. The axis itself is kept exactly.
+    ///
+    /// # Errors
+    /// The axis is zero, or beyond the range of f64.
     pub fn rotation(axis: [Rational; 3], degrees: &Rational) -> Result<Self, MotionError> {
         let axis = unit_if_rational(axis)?;
         let angle = reduce_degrees(degrees);
@@ -217,7 +221,7 @@ impl Motion {
     }
 
     /// Whether the rotation is the identity.
-    pub fn is_translation(&self) -> bool {
+    pub(crate) fn is_translation(&self) -> bool {
         self.rotation.is_none()
     }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 /// Why a camera cannot have taken a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PinholeError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]
@@ -121,14 +122,6 @@ impl PinholeError {
         let member = document.root.member(key);
         Some(member.map_or(document.root.span.clone(), |m| m.key_span.clone()))
     }
-
-    /// Whether the camera may belong to another image.
-    pub fn is_of_picture(&self) -> bool {
-        matches!(
-            self,
-            Self::Size { .. } | Self::Focal { .. } | Self::Centre { .. }
-        )
-    }
 }
 
 /// A camera's JSON: of OpenCV's matrices only `K` is required. The pose is what the search
@@ -227,12 +220,10 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// The camera of a JSON text, for an image with a width and height in pixels.
-    pub fn from_json(text: &str, picture: [usize; 2]) -> Result<Self, PinholeError> {
-        CameraFile::from_json(text)?.for_picture(picture)
-    }
-
     /// The camera of a matrix K.
+    ///
+    /// # Errors
+    /// The matrix is not that of a camera, or its focal lengths or skew are those of no sensor.
     pub fn new(k: &Matrix3<f64>) -> Result<Self, PinholeError> {
         if k.iter().any(|v| !v.is_finite()) {
             return Err(PinholeError::Matrix("has a value that is no number"));
@@ -288,7 +279,7 @@ impl Pinhole {
 
     /// The camera of the image reduced to half its width and height, each pixel the mean of four.
     #[must_use]
-    pub fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         Self {
             focal: self.focal.map(|f| 0.5 * f),
             centre: self.centre.map(|c| 0.5 * (c - 0.5)),
@@ -297,7 +288,7 @@ impl Pinhole {
     }
 
     /// The camera of `visibility` for the part at a pose.
-    pub fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> ViewCamera {
+    pub(crate) fn at(&self, pose: &Isometry3<f64>, [width, height]: [usize; 2]) -> ViewCamera {
         ViewCamera {
             model: CameraModel::Matrices {
                 k: self.matrix(),

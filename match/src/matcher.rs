@@ -115,7 +115,7 @@ impl Matcher<'_> {
     }
 
     /// The match near a pose: correspondences and pose are refined in turn until they converge.
-    pub fn matched(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
+    pub(crate) fn matched(&self, start: &Isometry3<f64>) -> Option<PartMatch> {
         self.at(start).map(|found| self.scored(found))
     }
 

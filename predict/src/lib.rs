@@ -20,4 +20,4 @@ pub mod render;
 pub mod sensor_planning;
 pub mod setup;
 pub mod sphere;
-pub mod statistics;
+mod statistics;

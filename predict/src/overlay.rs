@@ -138,7 +138,7 @@ fn arc_strokes(arc: &ArcLevel, prediction: &Prediction) -> Vec<OverlayStroke> {
 }
 
 /// The points of a form.
-pub fn points(geometry: &ArcGeometry) -> Vec<[f64; 2]> {
+pub(crate) fn points(geometry: &ArcGeometry) -> Vec<[f64; 2]> {
     match geometry {
         ArcGeometry::Line { ends } => ends.to_vec(),
         ArcGeometry::Conic { points, .. } | ArcGeometry::Sampled { points } => points.clone(),

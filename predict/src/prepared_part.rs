@@ -19,6 +19,7 @@ const POINTS: usize = 8;
 
 /// Why a part cannot be seen at all.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SubjectError {
     /// It has no faces.
     #[error("the part is empty: there is nothing to be seen")]
@@ -43,6 +44,9 @@ pub struct PreparedPart<'a> {
 
 impl<'a> PreparedPart<'a> {
     /// The part with this boundary and resolution.
+    ///
+    /// # Errors
+    /// The part has no faces.
     pub fn new(brep: &'a Brep, resolution: f64) -> Result<Self, SubjectError> {
         if brep.topology.faces.is_empty() {
             return Err(SubjectError::Empty);

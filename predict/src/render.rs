@@ -2,7 +2,7 @@
 //! regions, as a reference for predictions.
 //!
 //! A pixel is one sample where its corners and its middle show the same face in the same light, and
-//! [`FINE`] × [`FINE`] samples elsewhere.
+//! 8 × 8 samples elsewhere.
 
 use crate::image::blur::blur;
 use crate::image::response::respond;
@@ -12,7 +12,7 @@ use crate::setup::sensor::Sensor;
 use premio_detect::{Grey, PixelMask};
 
 /// The number of samples per side of a pixel at a change.
-pub const FINE: usize = 8;
+pub(crate) const FINE: usize = 8;
 
 /// The levels of rows of an image, before the point spread, noise and steps.
 pub fn rows(shading: &Shading<'_>, width: usize, rows: std::ops::Range<usize>) -> Vec<f32> {

@@ -52,7 +52,7 @@ pub struct Score {
 
 impl Score {
     /// Its value for a goal: greater is better.
-    pub fn value(&self, goal: Goal, radius: f64) -> f64 {
+    pub(crate) fn value(&self, goal: Goal, radius: f64) -> f64 {
         match goal {
             Goal::Features => self.expected,
             // The standard deviation of a point at the part's radius.
@@ -86,7 +86,11 @@ pub struct SetupScorer<'s> {
 }
 
 impl SetupScorer<'_> {
-    /// The score of a setup; an error where nothing is visible.
+    /// The score of a setup.
+    ///
+    /// # Errors
+    /// The setup cannot be used, the camera or a light has no view of the part, or the image does
+    /// not show it.
     pub fn score(&self, placing: &Placing, memory: &mut Memory) -> Result<Score, StageError> {
         // One seed for all: no setup is better than another by its noise.
         let setup = self

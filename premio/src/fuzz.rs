@@ -14,6 +14,9 @@ pub use premio_verify::generator::profile::Profile;
 
 /// The part of a profile and a seed. It is the same part on every machine.
 ///
+/// # Errors
+/// The part is beyond a limit of the reader.
+///
 /// # Examples
 ///
 /// ```

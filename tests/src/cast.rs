@@ -87,6 +87,9 @@ pub struct Counted {
 
 impl Cast {
     /// The triangles of a boundary; none if it is empty.
+    ///
+    /// # Errors
+    /// The boundary cannot be tessellated.
     pub fn new(evaluation: &Evaluation) -> Result<Self, TessellationError> {
         let size = evaluation.bounds.diagonal();
         let accuracy = Accuracy {

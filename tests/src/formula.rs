@@ -25,6 +25,9 @@ struct Function {
 
 impl Definitions {
     /// Takes a definition in.
+    ///
+    /// # Errors
+    /// The text is not a definition, or its expression cannot be evaluated.
     pub fn define(&mut self, text: &str) -> Result<(), String> {
         let (left, right) = text
             .split_once('=')
@@ -49,6 +52,9 @@ impl Definitions {
     }
 
     /// The value of an expression.
+    ///
+    /// # Errors
+    /// The expression cannot be evaluated.
     pub fn value(&self, text: &str) -> Result<f64, String> {
         self.compiled(text, None)?(0.0)
     }

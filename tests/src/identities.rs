@@ -146,6 +146,9 @@ fn scaled(tree: &Value, by: f64) -> Value {
 }
 
 /// The boundary of a tree, as compared by the laws.
+///
+/// # Errors
+/// The tree cannot be read or evaluated, or its boundary breaks a rule.
 pub fn side(tree: &Value) -> Result<Side, String> {
     let text = tree.to_string();
     let read = read(

@@ -77,7 +77,7 @@ pub struct Member {
 
 impl Member {
     /// The key and its value, or the key alone where the value stands elsewhere, as a table does.
-    pub fn span(&self) -> Range<usize> {
+    pub(crate) fn span(&self) -> Range<usize> {
         let end = match self.value.span.start >= self.key_span.end {
             true => self.value.span.end,
             false => self.key_span.end,

@@ -183,7 +183,7 @@ pub fn reason(text: &str) -> String {
     kind.replace("(#, #, #)", "a point")
 }
 
-/// [`examine`], with a panic reported as a fault.
+/// Runs the trial of a tree; a panic is reported as a fault.
 pub fn guarded(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     catch_unwind(AssertUnwindSafe(|| examine(model, terms)))
         .unwrap_or_else(|panic| TrialOutcome::wrong(FailureKind::Panic, message(&*panic)))
@@ -199,7 +199,7 @@ pub fn message(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// Runs the trial of a tree.
-pub fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
+pub(crate) fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     let description = match read(&write(model, Format::Json), Format::Json) {
         Ok(description) => description,
         Err(error) if error.kind == ErrorKind::Limit => return refused(error.to_string(), 0),

@@ -7,7 +7,7 @@
 //! 3. [`scene`]: the part before the camera.
 //! 4. [`contour_generator`]: edges and limbs with their cusps, as arcs with junctions at their
 //!    ends.
-//! 5. [`junction`]: where arcs cross in the image, and what a crossing changes.
+//! 5. `junction`: where arcs cross in the image, and what a crossing changes.
 //! 6. [`ray_casting`]: the faces between a point and the eye.
 //! 7. [`invisibility`]: quantitative invisibility, counted once and propagated (Appel 1967, Loutrel
 //!    1970).
@@ -18,7 +18,7 @@ pub mod contour_generator;
 pub mod contours;
 pub mod image_curve;
 pub mod invisibility;
-pub mod junction;
+mod junction;
 pub mod ray_casting;
 pub mod scene;
 

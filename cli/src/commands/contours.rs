@@ -188,7 +188,7 @@ impl<'a> Given<'a> {
         let words = match error {
             ViewError::EyeInside(_) => "lies inside the material of the part",
             ViewError::EyeFar { .. } => "is too far from the part for its resolution",
-            ViewError::Limb(_) => return None,
+            _ => return None,
         };
         match self {
             Self::File { path, text, .. } => {

@@ -6,6 +6,7 @@ use premio_kernel::geometry::intersect::IntersectionError;
 
 /// Why no boundary can be computed for a tree.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum EvaluationError {
     /// Two surfaces intersect in a way that the kernel does not support.
     #[error(transparent)]

@@ -223,6 +223,11 @@ const FEW: usize = 64;
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
 /// It is evaluated in f64, and if f64 is inconclusive, in 237 bits with the same resolution.
+///
+/// # Errors
+/// The numbers, the distance from the origin, the resolution or the number of entities is beyond a
+/// limit, or the part is not determined: surfaces nearly coincide or intersect in a way that is not
+/// supported, or the computed boundary contradicts itself or the tree.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
         (CoincidencePolicy::Exact, _) => return Ok(seen(tree, options, finely(tree, options)?)),

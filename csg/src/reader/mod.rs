@@ -155,6 +155,9 @@ impl Program {
 }
 
 /// Reads a description. `name` is used in messages.
+///
+/// # Errors
+/// The text does not describe a solid in this format, or it is beyond a stated limit.
 pub fn read(
     name: &str,
     bytes: &[u8],
@@ -167,6 +170,9 @@ pub fn read(
 }
 
 /// Reads a description in a form that can be written again. `name` is used in messages.
+///
+/// # Errors
+/// The text does not describe a solid in this format, or it is beyond a stated limit.
 pub fn parse(
     name: &str,
     bytes: &[u8],

@@ -24,6 +24,7 @@ pub(super) fn literal(text: &str, span: Range<usize>) -> Result<Rational, Spanne
         DecimalError::TooManyDigits => {
             SpannedError::limit(span, quote(text), format!("at most {MAX_DIGITS} digits"))
         }
+        _ => SpannedError::input(span, format!("{} ({error})", quote(text)), "a number"),
     })
 }
 

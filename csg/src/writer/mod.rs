@@ -21,10 +21,11 @@ use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
 /// The longest text, in bytes.
-pub const MAX_TEXT: usize = 1 << 30;
+pub(crate) const MAX_TEXT: usize = 1 << 30;
 
 /// Why a part was not written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// `.padl` cannot represent the empty solid.
     #[error("`.padl` has no word for the empty solid")]
@@ -53,6 +54,10 @@ pub enum WriteError {
 /// precision: in `.padl` rotations about other than coordinate axes, in `.csg` rotations by other
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers without a finite
 /// decimal.
+///
+/// # Errors
+/// The solid belongs to another builder or has too many primitives, the language is read only or
+/// has no word for the empty solid, or the text is too long.
 pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {
     if builder.is_foreign(part) {
         return Err(WriteError::ForeignSolid);

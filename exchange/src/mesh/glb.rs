@@ -25,6 +25,9 @@ const EDGES: [f32; 4] = [0.05, 0.05, 0.05, 1.0];
 const ROUGH: f32 = 0.6;
 
 /// The bytes of a file.
+///
+/// # Errors
+/// Points are too close for f32, or there are too many triangles.
 pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
     let centre = centre(&facets.points);
     let single = F32Points::new(facets, &centre)?;

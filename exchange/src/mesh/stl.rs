@@ -8,6 +8,9 @@ use nalgebra::{Point3, Vector3};
 use stl_io::{Normal, Triangle, Vertex, write_stl};
 
 /// The bytes of a file.
+///
+/// # Errors
+/// Points are too close for f32, or there are too many triangles.
 pub fn write(facets: &Facets) -> Result<Vec<u8>, MeshError> {
     let single = F32Points::new(facets, &Point3::origin())?;
     if let Some(corner) = single.closed_gap(&facets.points) {

@@ -9,6 +9,9 @@ use threemf2::model::builder::{MeshObjectBuilder, ModelBuilder, ObjectType, Unit
 use threemf2::package::ThreemfPackageBuilder;
 
 /// The bytes of a file.
+///
+/// # Errors
+/// There are too many triangles for the format.
 pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
     // The errors that can occur concern extensions, which are not used, and writing.
     written(facets, name, unit).ok_or(MeshError::TooMany {

@@ -11,7 +11,7 @@ const STEPS: u32 = 16;
 impl TwoManifold<'_> {
     /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
     /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop.
-    pub fn merge_short_edges(&mut self, least: f64) {
+    pub(crate) fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
                 let edge = &self.edges[e];
@@ -43,7 +43,7 @@ impl TwoManifold<'_> {
 impl TwoManifold<'_> {
     /// Removes the faces between two edges with a distance of at most `least`, which become one
     /// edge.
-    pub fn close_narrow(&mut self, least: f64) {
+    pub(crate) fn close_narrow(&mut self, least: f64) {
         let mut closed = vec![false; self.faces.len()];
         for face in 0..self.faces.len() {
             let Some([kept, given_up]) = self.narrow(face, least) else {

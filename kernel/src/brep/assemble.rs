@@ -73,6 +73,10 @@ struct Assembler<'a, N: Float = f64> {
 }
 
 /// Assembles the boundary representation with the given edges.
+///
+/// # Errors
+/// The edges do not form a boundary: a loop is open, an order of edges or the grouping of loops is
+/// ambiguous, a shell has no volume, or a void is in no solid.
 pub fn assemble<N: Float>(
     raw: BoundaryInput<N>,
     predicates: &Predicates,

@@ -4,6 +4,7 @@ use super::region::RegionError;
 
 /// Why edges do not form a boundary. Each is a failure of this program for the part.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssemblyError {
     /// The coedges of a face do not close at a vertex.
     #[error("the boundary of a face is open at ({:.9}, {:.9}, {:.9})", place[0], place[1], place[2])]

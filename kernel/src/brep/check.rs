@@ -13,6 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A rule that a boundary breaks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Violation {
     /// The end of a coedge is not the start of the next.
     #[error("loop {} is open after its coedge {}", ring.0, after.0)]

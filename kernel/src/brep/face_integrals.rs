@@ -105,6 +105,9 @@ impl<N: Float> FaceIntegrals<N> {
     }
 
     /// The signed volume that a shell encloses.
+    ///
+    /// # Panics
+    /// The boundary has no such shell.
     pub fn enclosed(&self, brep: &Brep<N>, shell: ShellId) -> ShellVolume<N> {
         let faces = &brep.topology.shells[shell.index()].faces;
         let amid = &self.shells[shell.index()];
@@ -155,7 +158,7 @@ pub struct ShellVolume<N: Float = f64> {
 
 impl<N: Float> ShellVolume<N> {
     /// Whether its sign is known.
-    pub fn is_clear(&self) -> bool {
+    pub(crate) fn is_clear(&self) -> bool {
         self.volume.abs().is_beyond(self.noise)
     }
 }
@@ -186,12 +189,12 @@ impl Care {
 const NOISE: f64 = 64.0;
 
 /// The size of a part, to which the rounding of its coordinates is proportional.
-pub fn size<N: Float>(brep: &Brep<N>) -> N {
+pub(crate) fn size<N: Float>(brep: &Brep<N>) -> N {
     Amid::new(brep, brep.topology.face_ids(), Care::Doubles).size
 }
 
 /// The signed volume that a shell encloses; `size` is that of the part.
-pub fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
+pub(crate) fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
     let volume = |care| {
         let amid = Amid::new(brep, faces.iter().copied(), care);
         let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));

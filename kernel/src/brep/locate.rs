@@ -81,6 +81,9 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// The locator of a face of a boundary representation.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn from_face(brep: &'a Brep<N>, face: FaceId, resolution: N) -> Self {
         let coedges = brep.topology.coedges_of(face);
         let arcs = coedges.map(|c| DirectedArc::new(brep, c));
@@ -94,7 +97,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
 
     /// A locator for when the resolution is not known. Edges are assumed to have the rounding error
     /// of the part's `size`, and no path may pass between two edges whose ends do not coincide.
-    pub fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
+    pub(crate) fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
         let edges = brep.topology.edges_of(face);
         let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
         let apart = gaps.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
@@ -103,7 +106,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// The directed arcs of the boundary.
-    pub fn arcs(&self) -> &[DirectedArc<'a, N>] {
+    pub(crate) fn arcs(&self) -> &[DirectedArc<'a, N>] {
         &self.arcs.all
     }
 
@@ -124,7 +127,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     }
 
     /// Classifies `p`, which is known not to be on the boundary.
-    pub fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
+    pub(crate) fn place_off_boundary(&self, p: &Point3<N>) -> PointLocation {
         if self.arcs.all.is_empty() {
             return PointLocation::Inside;
         }
@@ -431,12 +434,18 @@ impl<'a, N: Float> Locator<'a, N> {
     }
 
     /// The locator of one face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn face(&self, face: FaceId) -> &FaceLocator<'a, N> {
         self.faces[face.index()]
             .get_or_init(|| FaceLocator::from_face(self.brep, face, self.resolution))
     }
 
     /// Classifies `p`, a point of the face's surface, relative to the face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn place(&self, face: FaceId, p: &Point3<N>) -> PointLocation {
         self.face(face).place(p)
     }

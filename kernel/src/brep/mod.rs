@@ -11,7 +11,7 @@ pub mod assembly_error;
 pub mod boundary_input;
 pub mod bounding_box;
 pub mod check;
-pub mod cycle_basis;
+mod cycle_basis;
 mod end_gaps;
 pub mod face_integrals;
 pub mod locate;
@@ -77,31 +77,49 @@ pub struct Brep<N: Float = f64> {
 
 impl<N: Float> Brep<N> {
     /// The curve of an edge.
+    ///
+    /// # Panics
+    /// The boundary has no such edge.
     pub fn curve(&self, edge: EdgeId) -> &Curve<N> {
         &self.geometry.curves[self.geometry.arcs[edge.0 as usize].curve]
     }
 
     /// The range of an edge on its curve.
+    ///
+    /// # Panics
+    /// The boundary has no such edge.
     pub fn range(&self, edge: EdgeId) -> [N; 2] {
         self.geometry.arcs[edge.0 as usize].range
     }
 
     /// The surface of a face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn surface(&self, face: FaceId) -> &Surface<N> {
         &self.geometry.surfaces[self.geometry.patches[face.0 as usize].surface]
     }
 
     /// The sense of a face's surface.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn sense(&self, face: FaceId) -> Sense {
         self.geometry.patches[face.0 as usize].sense
     }
 
     /// The location of a vertex.
+    ///
+    /// # Panics
+    /// The boundary has no such vertex.
     pub fn point(&self, vertex: VertexId) -> Point3<N> {
         self.geometry.points[vertex.0 as usize]
     }
 
     /// The normal of a face at a point of it, pointing out of the material.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn outward(&self, face: FaceId, p: &Point3<N>) -> Vector3<N> {
         let n = self.surface(face).normal(p);
         match self.sense(face) {

@@ -37,6 +37,9 @@ pub struct DirectedArc<'a, N: Float = f64> {
 
 impl<'a, N: Float> DirectedArc<'a, N> {
     /// A coedge of a boundary representation.
+    ///
+    /// # Panics
+    /// The boundary has no such coedge.
     pub fn new(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
         let coedge = brep.topology.coedge(coedge);
         Self {
@@ -48,7 +51,7 @@ impl<'a, N: Float> DirectedArc<'a, N> {
 
     /// Whether both belong to one edge. If a face has two such arcs, it lies on both sides of the
     /// edge. Several edges may belong to one curve.
-    pub fn shares_edge(&self, other: &Self) -> bool {
+    pub(crate) fn shares_edge(&self, other: &Self) -> bool {
         std::ptr::eq(self.curve, other.curve) && self.range == other.range
     }
 }
@@ -138,7 +141,7 @@ impl<N: Float> SurfacePath<N> {
     }
 
     /// An endless straight line in a plane, along the unit vector `direction`.
-    pub fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
+    pub(crate) fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
         let normal = direction.cross(&plane.frame.z).unit();
         let track = Track::Line(direction);
         Self::new(start, normal, track, Branch::Whole, N::INFINITY)
@@ -204,7 +207,11 @@ impl<N: Float> SurfacePath<N> {
 
     /// The ruling of a cylinder or a cone through a point of it; for a point on the axis, the one
     /// at angle zero.
-    pub fn ruling_through(surface: &Surface<N>, start: &Point3<N>, sense: Sense) -> Option<Self> {
+    pub(crate) fn ruling_through(
+        surface: &Surface<N>,
+        start: &Point3<N>,
+        sense: Sense,
+    ) -> Option<Self> {
         let f = surface.frame();
         let q = f.coordinates(start);
         let rho = q.x.hypot(q.y);
@@ -296,7 +303,7 @@ impl<N: Float> SurfacePath<N> {
     }
 
     /// The length at which the path passes a point of it.
-    pub fn at(&self, p: &Point3<N>) -> N {
+    pub(crate) fn at(&self, p: &Point3<N>) -> N {
         match self.track {
             Track::Line(d) => (p - self.start).dot(&d),
             Track::Circle(ref f, r) => {
@@ -329,12 +336,12 @@ impl<N: Float> SurfacePath<N> {
     }
 
     /// Whether the path may pass through a box.
-    pub fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: N) -> bool {
+    pub(crate) fn may_intersect(&self, lo: &[f64; 3], hi: &[f64; 3], resolution: N) -> bool {
         self.reach.may_intersect(lo, hi, resolution.above())
     }
 
     /// [`Self::may_intersect`] of a box.
-    pub fn may_intersect_box(&self, b: &Aabb, resolution: N) -> bool {
+    pub(crate) fn may_intersect_box(&self, b: &Aabb, resolution: N) -> bool {
         self.may_intersect(&b.min, &b.max, resolution)
     }
 

@@ -170,31 +170,49 @@ impl Topology {
     }
 
     /// An edge.
+    ///
+    /// # Panics
+    /// The boundary has no such edge.
     pub fn edge(&self, id: EdgeId) -> &Edge {
         &self.edges[id.index()]
     }
 
     /// A coedge.
+    ///
+    /// # Panics
+    /// The boundary has no such coedge.
     pub fn coedge(&self, id: CoedgeId) -> &Coedge {
         &self.coedges[id.index()]
     }
 
     /// A loop.
+    ///
+    /// # Panics
+    /// The boundary has no such loop.
     pub fn ring(&self, id: LoopId) -> &Loop {
         &self.loops[id.index()]
     }
 
     /// A face.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn face(&self, id: FaceId) -> &Face {
         &self.faces[id.index()]
     }
 
     /// The face on which a coedge lies.
+    ///
+    /// # Panics
+    /// The boundary has no such coedge.
     pub fn face_of(&self, id: CoedgeId) -> FaceId {
         self.ring(self.coedge(id).owner).face
     }
 
     /// The coedges of a face, in the order of its loops.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn coedges_of(&self, id: FaceId) -> impl Iterator<Item = CoedgeId> + '_ {
         let loops = self.face(id).loops.iter();
         loops.flat_map(|&l| self.ring(l).coedges.iter().copied())
@@ -202,11 +220,17 @@ impl Topology {
 
     /// The edges of a face, in the order of its loops. An edge with the face on both sides occurs
     /// twice.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
     pub fn edges_of(&self, id: FaceId) -> impl Iterator<Item = EdgeId> + '_ {
         self.coedges_of(id).map(|c| self.coedge(c).edge)
     }
 
     /// The faces around an edge, in order.
+    ///
+    /// # Panics
+    /// The boundary has no such edge.
     pub fn faces_of(&self, id: EdgeId) -> impl Iterator<Item = FaceId> + '_ {
         self.edge(id).coedges.iter().map(|&c| self.face_of(c))
     }
@@ -218,6 +242,9 @@ impl Topology {
     }
 
     /// The start and end of a coedge; none for a closed edge.
+    ///
+    /// # Panics
+    /// The boundary has no such coedge.
     pub fn run(&self, id: CoedgeId) -> Option<[VertexId; 2]> {
         let c = self.coedge(id);
         let [a, b] = self.edge(c.edge).ends?;

@@ -3,7 +3,7 @@
 
 mod thirds;
 
-pub use thirds::{Reaches, Thirds};
+pub(crate) use thirds::Reaches;
 
 use crate::number::analytic::Analytic;
 use crate::number::float::Float;
@@ -15,7 +15,7 @@ pub struct BivariateTrigPoly<N: Float = f64>(pub [[N; 5]; 5]);
 
 /// A value with its partial derivatives to the second order: f, f_x, f_y, f_xx, f_xy, f_yy.
 #[derive(Clone, Copy, Debug)]
-pub struct Partials<S> {
+pub(crate) struct Partials<S> {
     /// The value.
     pub f: S,
     /// By the first angle.
@@ -44,7 +44,7 @@ fn basis<N: Float, S: Analytic<Float = N>>(angle: S) -> [[S; 5]; 3] {
 
 /// A polynomial in two angles with one angle fixed: the coefficients of the functions of the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Section<N: Float = f64>(pub [N; 5]);
+pub(crate) struct Section<N: Float = f64>(pub [N; 5]);
 
 impl<N: Float> Section<N> {
     /// The sum of the absolute coefficients, to which rounding is proportional.
@@ -108,7 +108,7 @@ fn partials<N: Float, S: Analytic<Float = N>>(
 
 impl<N: Float> BivariateTrigPoly<N> {
     /// The polynomial with the first angle, or the second, fixed to `angle`.
-    pub fn section(&self, first: bool, angle: N) -> Section<N> {
+    pub(crate) fn section(&self, first: bool, angle: N) -> Section<N> {
         let fixed = &basis(angle)[0];
         let entry = |i: usize, j: usize| if first { self.0[i][j] } else { self.0[j][i] };
         let sum = |j: usize| (0..5).map(|i| entry(i, j) * fixed[i]).sum();
@@ -122,7 +122,7 @@ impl<N: Float> BivariateTrigPoly<N> {
 
     /// The polynomial that equals `f`, which must be one. It is found from 25 samples by the
     /// discrete orthogonality of the five functions.
-    pub fn interpolate(f: impl Fn(N, N) -> N) -> Self {
+    pub(crate) fn interpolate(f: impl Fn(N, N) -> N) -> Self {
         let node = |i: usize| N::TAU * (N::from_f64(i as f64)) / N::from_f64(5.0);
         let rows: [[N; 5]; 5] = std::array::from_fn(|i| basis(node(i))[0]);
         let weight = |m: usize| {
@@ -147,12 +147,12 @@ impl<N: Float> BivariateTrigPoly<N> {
     }
 
     /// The sum of the absolute coefficients, a bound of the absolute value.
-    pub fn bound(&self) -> N {
+    pub(crate) fn bound(&self) -> N {
         self.0.iter().flatten().map(|c| c.abs()).sum()
     }
 
     /// The value.
-    pub fn value<S: Analytic<Float = N>>(&self, x: S, y: S) -> S {
+    pub(crate) fn value<S: Analytic<Float = N>>(&self, x: S, y: S) -> S {
         let (bx, by) = (basis(x), basis(y));
         self.sum(&bx[0], &by[0])
     }
@@ -175,12 +175,12 @@ impl<N: Float> BivariateTrigPoly<N> {
     }
 
     /// The value with its partial derivatives.
-    pub fn partials<S: Analytic<Float = N>>(&self, x: S, y: S) -> Partials<S> {
+    pub(crate) fn partials<S: Analytic<Float = N>>(&self, x: S, y: S) -> Partials<S> {
         partials(&self.0, &basis(x), &basis(y))
     }
 
     /// The derivative by the first angle (0) or the second (1).
-    pub fn derivative(&self, angle: usize) -> Self {
+    pub(crate) fn derivative(&self, angle: usize) -> Self {
         // 1, cos, sin, cos 2, sin 2.
         let by = |k: [N; 5]| [N::ZERO, k[2], -k[1], N::TWO * k[4], -N::TWO * k[3]];
         let mut d = Self::zero();
@@ -200,7 +200,7 @@ impl<N: Float> BivariateTrigPoly<N> {
     }
 
     /// A bound of the n-th derivatives, over n!, in any direction of length one in each angle.
-    pub fn variation(&self, n: usize) -> N {
+    pub(crate) fn variation(&self, n: usize) -> N {
         let degree = [N::ZERO, N::ONE, N::ONE, N::TWO, N::TWO];
         let mut total = N::ZERO;
         for (i, row) in self.0.iter().enumerate() {

@@ -185,7 +185,7 @@ const SAMPLES: u32 = 16;
 const PIECES: usize = 2048;
 
 /// The bounding box of the arc of a curve, to rounding.
-pub fn tight_bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
+pub(crate) fn tight_bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     if has_exact_bounds(curve) {
         bounds(curve, range)
     } else {

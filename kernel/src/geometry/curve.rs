@@ -31,7 +31,7 @@ pub struct Circle<N: Float = f64> {
 
 impl<N: Float> Circle<N> {
     /// The circle through three points; `None` if they are collinear.
-    pub fn through(a: &Point3<N>, b: &Point3<N>, c: &Point3<N>) -> Option<Self> {
+    pub(crate) fn through(a: &Point3<N>, b: &Point3<N>, c: &Point3<N>) -> Option<Self> {
         let (u, v) = (b - a, c - a);
         let across = u.cross(&v);
         let z = direction(&across)?;
@@ -84,7 +84,7 @@ pub struct Conic<N: Float = f64> {
 
 impl<N: Float> Conic<N> {
     /// A conic about its vertex, y² = 2 p x - k x², with p the semi-latus rectum.
-    pub fn about_vertex(frame: Frame<N>, rectum: N, k: N) -> Self {
+    pub(crate) fn about_vertex(frame: Frame<N>, rectum: N, k: N) -> Self {
         Self {
             frame,
             curvature: N::ONE / rectum,
@@ -145,7 +145,7 @@ pub enum Curve<N: Float = f64> {
 
 impl<N: Float> Line<N> {
     /// The point at t.
-    pub fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
+    pub(crate) fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
         let d = &self.direction;
         [0, 1, 2].map(|i| S::constant(self.origin[i]) + t.scale(d[i]))
     }
@@ -249,7 +249,7 @@ impl<N: Float> Curve<N> {
     /// The certified range of the point over an interval of t, without derivatives. `None` for a
     /// curve on a torus unless the interval is a single parameter: its evaluation yields the
     /// derivatives anyway.
-    pub fn box_over(&self, t: Interval<N>) -> Option<[Interval<N>; 3]> {
+    pub(crate) fn box_over(&self, t: Interval<N>) -> Option<[Interval<N>; 3]> {
         match self {
             Self::Toric(c) => (t.lo == t.hi).then(|| c.box_at(t.lo)),
             _ => self.closed_form(t),
@@ -389,7 +389,7 @@ impl<N: Float> Curve<N> {
 
     /// The range of parameters for which the curve can lie within `radius` of `centre`: part of an
     /// open curve's range, or a whole period.
-    pub fn range_within(&self, centre: &Point3<N>, radius: N) -> Option<[N; 2]> {
+    pub(crate) fn range_within(&self, centre: &Point3<N>, radius: N) -> Option<[N; 2]> {
         match self {
             Self::Line(c) => {
                 let t = (centre - c.origin).dot(&c.direction);

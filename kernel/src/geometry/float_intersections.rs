@@ -10,7 +10,7 @@ use crate::number::float::Float;
 
 impl<N: Float> Frame<N> {
     /// The frame rounded to f64.
-    pub fn to_f64(&self) -> Frame {
+    pub(crate) fn to_f64(self) -> Frame {
         Frame {
             origin: self.origin.map(N::rounded),
             x: self.x.map(N::rounded),

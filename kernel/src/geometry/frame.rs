@@ -60,7 +60,7 @@ impl<N: Float> Frame<N> {
     }
 
     /// The point with the given coordinates in this frame.
-    pub fn world_of<S: Analytic<Float = N>>(&self, q: [S; 3]) -> [S; 3] {
+    pub(crate) fn world_of<S: Analytic<Float = N>>(&self, q: [S; 3]) -> [S; 3] {
         let along = |i: usize| {
             S::constant(self.origin[i])
                 + (q[0].scale(self.x[i]) + q[1].scale(self.y[i]) + q[2].scale(self.z[i]))

@@ -10,12 +10,15 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 /// Writes a surface with its exact parameters.
+///
+/// # Errors
+/// The serializer fails.
 pub fn surface<S: Serializer>(surface: &Surface, serializer: S) -> Result<S::Ok, S::Error> {
     surface_value(surface).serialize(serializer)
 }
 
 /// The JSON of a surface: its type, its frame and its parameters, as in [`Surface`].
-pub fn surface_value(surface: &Surface) -> Value {
+pub(crate) fn surface_value(surface: &Surface) -> Value {
     let name = surface.kind().name();
     let frame = surface.frame();
     match surface {
@@ -34,6 +37,9 @@ pub fn surface_value(surface: &Surface) -> Value {
 }
 
 /// Writes a curve with its exact parameters.
+///
+/// # Errors
+/// The serializer fails.
 pub fn curve<S: Serializer>(curve: &Curve, serializer: S) -> Result<S::Ok, S::Error> {
     value(curve).serialize(serializer)
 }
@@ -56,7 +62,7 @@ fn with(mut v: Value, more: &[(&str, f64)]) -> Value {
 }
 
 /// The JSON of a curve: its type and its parameters. [`Curve`] documents the point at a parameter.
-pub fn value(curve: &Curve) -> Value {
+pub(crate) fn value(curve: &Curve) -> Value {
     match curve {
         Curve::Line(c) => {
             json!({"type": "line", "origin": three(c.origin), "direction": three(c.direction)})

@@ -1,7 +1,7 @@
 //! Surfaces and curves: the geometry attached to the entities of a boundary.
 
 pub mod bivariate_trig_poly;
-pub mod blow_up;
+mod blow_up;
 pub mod bounds;
 pub mod curve;
 pub mod curve_plane;
@@ -20,8 +20,8 @@ pub mod surface_pair;
 mod torus_circles;
 pub mod torus_curve;
 mod torus_grid;
-pub mod torus_parameter;
+pub(crate) mod torus_parameter;
 pub mod trace;
 mod tracer;
-pub mod trigonometric;
+pub(crate) mod trigonometric;
 pub mod vector;

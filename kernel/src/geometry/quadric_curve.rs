@@ -15,7 +15,7 @@ use crate::number::float::Float;
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ruled<N: Float = f64> {
+pub(crate) enum Ruled<N: Float = f64> {
     /// A cylinder; w is the height.
     Cylinder(Cylinder<N>),
     /// A cone's nappe; 1/w is the height above the apex.
@@ -24,7 +24,7 @@ pub enum Ruled<N: Float = f64> {
 
 /// The angle u as a function of the parameter t.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sweep<N: Float = f64> {
+pub(crate) enum Sweep<N: Float = f64> {
     /// u = t, closed after the given number of turns.
     Round {
         /// 1, or 2 if the curve closes after two turns.
@@ -41,7 +41,7 @@ pub enum Sweep<N: Float = f64> {
 
 /// The other quadric along the rulings: k w^2 + 2 B(u) w + C(u).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Along<N: Float = f64> {
+pub(crate) struct Along<N: Float = f64> {
     /// k.
     pub lead: N,
     /// B.
@@ -88,7 +88,7 @@ impl<N: Float> Along<N> {
 
 /// The height w as a function of the angle u.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Height<N: Float = f64> {
+pub(crate) enum Height<N: Float = f64> {
     /// (-B ± √Δ)/k with Δ positive everywhere.
     Whole {
         /// k, B and C.
@@ -129,17 +129,17 @@ pub enum Height<N: Float = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricCurve<N: Float = f64> {
     /// The surface whose rulings carry it.
-    pub base: Ruled<N>,
+    pub(crate) base: Ruled<N>,
     /// The run of the angle.
-    pub sweep: Sweep<N>,
+    pub(crate) sweep: Sweep<N>,
     /// The height over the angle.
-    pub height: Height<N>,
+    pub(crate) height: Height<N>,
 }
 
 impl<N: Float> QuadricCurve<N> {
     /// The parameter's period, if the branch is closed. All branches are, except rational ones with
     /// a pole.
-    pub fn period(&self) -> Option<N> {
+    pub(crate) fn period(&self) -> Option<N> {
         match (self.height, self.sweep) {
             (Height::Rational { linear, .. }, _) => {
                 let [mean, cos, sin] = linear;
@@ -152,7 +152,7 @@ impl<N: Float> QuadricCurve<N> {
     }
 
     /// The angle u at t.
-    pub fn angle<S: Analytic<Float = N>>(&self, t: S) -> S {
+    pub(crate) fn angle<S: Analytic<Float = N>>(&self, t: S) -> S {
         match self.sweep {
             Sweep::Round { .. } => t,
             Sweep::Oval { mid, half } => S::constant(mid) - t.sin_cos().1.scale(half),
@@ -245,14 +245,14 @@ impl<N: Float> QuadricCurve<N> {
     }
 
     /// The height w at t. For a cone it is the reciprocal of the height above the apex.
-    pub fn height_at<S: Analytic<Float = N>>(&self, t: S) -> S {
+    pub(crate) fn height_at<S: Analytic<Float = N>>(&self, t: S) -> S {
         let u = self.angle(t);
         let (n, d) = self.quotient(t, u, u.sin_cos());
         n.over(d)
     }
 
     /// The point at t.
-    pub fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
+    pub(crate) fn at<S: Analytic<Float = N>>(&self, t: S) -> [S; 3] {
         let u = self.angle(t);
         let (sin, cos) = u.sin_cos();
         let (n, d) = self.quotient(t, u, (sin, cos));

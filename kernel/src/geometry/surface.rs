@@ -159,7 +159,7 @@ impl<N: Float> Surface<N> {
     }
 
     /// The implicit polynomial of the surface; for a cone it vanishes on both nappes.
-    pub fn polynomial(&self, p: &Point3<N>) -> N {
+    pub(crate) fn polynomial(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         let across = q.x * q.x + q.y * q.y;
         match self {

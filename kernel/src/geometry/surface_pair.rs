@@ -1,6 +1,6 @@
 //! The relative position of two surfaces, as distances over the part's extent.
 //!
-//! Each measure is written once, over any [`Enclosable`]. It is evaluated in f64 intervals first,
+//! Each measure is written once, over any `Enclosable` number. It is evaluated in f64 intervals first,
 //! and from the exact coefficients with more bits where those are inconclusive. The constructions
 //! use the decisions and compute in f64. Directions need not have unit length.
 
@@ -56,7 +56,7 @@ enum Source<'a> {
 #[derive(Clone, Copy)]
 pub struct Carrier<'a, N: Float = f64> {
     /// The surface; its numbers are the exact ones, rounded.
-    pub surface: &'a Surface<N>,
+    pub(crate) surface: &'a Surface<N>,
     source: Source<'a>,
 }
 
@@ -78,7 +78,7 @@ impl<'a, N: Float> Carrier<'a, N> {
     }
 
     /// A surface computed by a construction. Its position is taken as exact and is not proven.
-    pub fn constructed(surface: &'a Surface<N>) -> Self {
+    pub(crate) fn constructed(surface: &'a Surface<N>) -> Self {
         Self {
             surface,
             source: Source::Constructed,
@@ -97,12 +97,12 @@ impl<'a, N: Float> Carrier<'a, N> {
     }
 
     /// The surface's own numbers.
-    pub fn numbers(&self) -> Coefficients<N> {
+    pub(crate) fn numbers(&self) -> Coefficients<N> {
         numbers(self.surface, |x| x, |x| x)
     }
 
     /// The exact coefficients, for computation to so many bits.
-    pub fn computed(&self, bits: usize) -> Coefficients<RationalInterval> {
+    pub(crate) fn computed(&self, bits: usize) -> Coefficients<RationalInterval> {
         self.exact()
             .map(|c| RationalInterval::exact(c.clone(), bits))
     }
@@ -470,11 +470,11 @@ impl<R: Enclosable> Over<R> {
 #[derive(Clone, Copy)]
 pub struct SurfacePair<'a, N: Float = f64> {
     /// The first.
-    pub a: Carrier<'a, N>,
+    pub(crate) a: Carrier<'a, N>,
     /// The second.
-    pub b: Carrier<'a, N>,
+    pub(crate) b: Carrier<'a, N>,
     /// The extent.
-    pub extent: &'a RegionOfInterest<N>,
+    pub(crate) extent: &'a RegionOfInterest<N>,
 }
 
 impl<'a, N: Float> SurfacePair<'a, N> {
@@ -484,7 +484,7 @@ impl<'a, N: Float> SurfacePair<'a, N> {
     }
 
     /// The pair with its surfaces swapped.
-    pub fn turned(&self) -> Self {
+    pub(crate) fn turned(&self) -> Self {
         Self {
             a: self.b,
             b: self.a,

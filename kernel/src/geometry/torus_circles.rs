@@ -35,7 +35,7 @@ impl<N: Float> TorusCurve<N> {
     /// The parameters, near the curve's own, at which it crosses the circle of points with one
     /// angle fixed. `None` if the result is ambiguous: if some branch is tangent to the circle or
     /// runs along it, or next to singular points.
-    pub fn across(&self, fixed: TorusParameter, angle: N, resolution: N) -> Option<Vec<N>> {
+    pub(crate) fn across(&self, fixed: TorusParameter, angle: N, resolution: N) -> Option<Vec<N>> {
         let section = self.form.section(fixed == TorusParameter::Around, angle);
         let zeros = simple_zeros(&section.0, self.form.bound() * N::ROUNDING)?;
         let mut crossed = Vec::new();
@@ -50,7 +50,7 @@ impl<N: Float> TorusCurve<N> {
     /// `None` unless the surface is, to rounding, the one whose intersection with the torus is the
     /// curve: a surface that contains the curve within the resolution only may intersect the torus
     /// elsewhere.
-    pub fn across_circle(
+    pub(crate) fn across_circle(
         &self,
         circle: &Circle<N>,
         surface: &Surface<N>,

@@ -4,7 +4,7 @@
 //! Notation: θ is the angle about the axis, φ that about the tube. The curve is F(θ, φ) = 0, with F
 //! a [`BivariateTrigPoly`]. It is stored as a chain of segments. Each is a graph of one angle over
 //! the other, inside a rectangle in which the slope is bounded, so that every point is one
-//! well-conditioned root. Close to a singular point the graph is that of κ over σ in a [`Chart`].
+//! well-conditioned root. Close to a singular point the graph is that of κ over σ in a `Chart`.
 
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Section};
 use super::blow_up::{Chart, DEGREE};
@@ -19,7 +19,7 @@ use nalgebra::Point3;
 
 /// A graph of one angle over the other, or of κ over σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorusCurveSegment<N: Float = f64> {
+pub(crate) struct TorusCurveSegment<N: Float = f64> {
     /// The running angle, or the angle whose offset is a power of σ.
     pub axis: TorusParameter,
     /// Where it starts.
@@ -43,15 +43,15 @@ pub struct TorusCurveSegment<N: Float = f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TorusCurve<N: Float = f64> {
     /// The torus.
-    pub torus: Torus<N>,
+    pub(crate) torus: Torus<N>,
     /// F.
-    pub form: BivariateTrigPoly<N>,
+    pub(crate) form: BivariateTrigPoly<N>,
     /// F about the singular points, for each branch.
-    pub charts: Vec<Chart<N>>,
+    pub(crate) charts: Vec<Chart<N>>,
     /// The chain.
-    pub segments: Vec<TorusCurveSegment<N>>,
+    pub(crate) segments: Vec<TorusCurveSegment<N>>,
     /// Whether the last segment ends where the first begins.
-    pub closed: bool,
+    pub(crate) closed: bool,
 }
 
 /// F in the coordinates of a segment.
@@ -294,7 +294,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// (θ, φ) at both ends of a segment, in its direction.
-    pub fn ends(&self, index: usize) -> [[N; 2]; 2] {
+    pub(crate) fn ends(&self, index: usize) -> [[N; 2]; 2] {
         let s = &self.segments[index];
         let at = |x: N, y: N| {
             self.unfolded(s, Jet::constant(x), Jet::constant(y))
@@ -304,7 +304,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The number of segments, which is the length of the parameter range.
-    pub fn length(&self) -> N {
+    pub(crate) fn length(&self) -> N {
         N::from_f64(self.segments.len() as f64)
     }
 
@@ -320,7 +320,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// (θ, φ) at t with two derivatives by t.
-    pub fn angles(&self, t: N) -> [Jet<N>; 2] {
+    pub(crate) fn angles(&self, t: N) -> [Jet<N>; 2] {
         let (s, tau) = self.locate(t);
         let length = s.to - s.from;
         let x = s.from + tau * length;
@@ -339,7 +339,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// (θ, φ) over an interval of t inside one segment, with two derivatives.
-    pub fn angles_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 2] {
+    pub(crate) fn angles_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 2] {
         let (s, tau) = self.locate(t.mid());
         let length = s.to - s.from;
         let base = t.mid() - tau;
@@ -360,7 +360,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// A range of the point at t.
-    pub fn box_at(&self, t: N) -> [Interval<N>; 3] {
+    pub(crate) fn box_at(&self, t: N) -> [Interval<N>; 3] {
         let (s, tau) = self.locate(t);
         let run = Interval::point(s.from) + Interval::point(tau).scale(s.to - s.from);
         let other = s.solution(self.form(s), run);
@@ -374,7 +374,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The point with the given angles.
-    pub fn lift<S: Analytic<Float = N>>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
+    pub(crate) fn lift<S: Analytic<Float = N>>(&self, [theta, phi]: [S; 2]) -> [S; 3] {
         let t = &self.torus;
         let (st, ct) = theta.sin_cos();
         let (sp, cp) = phi.sin_cos();
@@ -384,7 +384,7 @@ impl<N: Float> TorusCurve<N> {
 
     /// The error of the point at t by the rounding of F: F's rounding divided by its gradient. In a
     /// chart of a singular point it is no larger than elsewhere: zero.
-    pub fn rounding_error(&self, t: N) -> N {
+    pub(crate) fn rounding_error(&self, t: N) -> N {
         let (s, tau) = self.locate(t);
         if s.chart.is_some() {
             return N::ZERO;
@@ -396,7 +396,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// Whether the curve has a cusp at t.
-    pub fn turns_back(&self, t: N) -> bool {
+    pub(crate) fn turns_back(&self, t: N) -> bool {
         let n = self.segments.len();
         let near = t.rem_euclid(N::from_f64(n as f64)).round();
         let s = &self.segments[near.index() % n];
@@ -407,7 +407,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The parameter of the point of the curve closest to the angles (θ, φ).
-    pub fn parameter(&self, theta: N, phi: N) -> N {
+    pub(crate) fn parameter(&self, theta: N, phi: N) -> N {
         let mut best = (N::INFINITY, N::ZERO);
         for (i, s) in self.segments.iter().enumerate() {
             let x = self.folded(s, theta, phi);
@@ -439,7 +439,7 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The point at t.
-    pub fn point(&self, t: N) -> Point3<N> {
+    pub(crate) fn point(&self, t: N) -> Point3<N> {
         let (s, tau) = self.locate(t);
         Point3::from(self.lift(self.angles_on(s, tau)))
     }

@@ -54,7 +54,7 @@ pub fn solution<N: Float, const D: usize>(mut m: [[N; D]; D], mut right: [N; D])
 }
 
 /// The unit vector in the direction of a vector; `None` if its length is zero.
-pub fn direction<N: Float>(v: &Vector3<N>) -> Option<Vector3<N>> {
+pub(crate) fn direction<N: Float>(v: &Vector3<N>) -> Option<Vector3<N>> {
     let length = v.length();
     (length > N::ZERO).then(|| v / length)
 }

@@ -1,6 +1,7 @@
 //! Functions that the scalar types of the generic formulas share.
 
-pub use super::float::{Analytic, harmonic};
+pub use super::float::Analytic;
+pub(crate) use super::float::harmonic;
 
 use super::float::Float;
 

@@ -146,7 +146,7 @@ pub trait Analytic:
     /// sin x / x, for 0 <= x <= pi.
     fn sinc(self) -> Self;
     /// The trigonometric polynomial of degree two of this angle; `at` are the sine and cosine of
-    /// the angle. On intervals it is tighter than [`harmonic`] where terms cancel.
+    /// the angle. On intervals it is tighter than the sum of the terms where they cancel.
     fn harmonic(self, k: &[Self::Float; 5], at: (Self, Self)) -> Self {
         harmonic(k, at)
     }
@@ -155,7 +155,7 @@ pub trait Analytic:
 }
 
 /// A trigonometric polynomial of degree two: k0 + k1 cos + k2 sin + k3 cos 2u + k4 sin 2u.
-pub fn harmonic<S: Analytic>(k: &[S::Float; 5], (sin, cos): (S, S)) -> S {
+pub(crate) fn harmonic<S: Analytic>(k: &[S::Float; 5], (sin, cos): (S, S)) -> S {
     let cos2 = cos.square().times(2.0) - S::constant_f64(1.0);
     let sin2 = (sin * cos).times(2.0);
     S::constant(k[0]) + cos.scale(k[1]) + sin.scale(k[2]) + cos2.scale(k[3]) + sin2.scale(k[4])

@@ -59,7 +59,7 @@ const FARTHER: f64 = 64.0;
 impl<'a> F64Filter<'a> {
     /// The filter of `whole` on [a, b]. The error is estimated from samples; `least` is the error
     /// by rounding alone.
-    pub fn new<N: Float>(
+    pub(crate) fn new<N: Float>(
         whole: &dyn Function<N>,
         rounded_f64: &'a dyn Function,
         [a, b]: [N; 2],

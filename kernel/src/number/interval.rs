@@ -101,19 +101,6 @@ impl<N: Float> Interval<N> {
         if lo <= hi { Self { lo, hi } } else { self }
     }
 
-    /// The smallest interval that contains both.
-    pub fn hull(self, other: Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
-    }
-
-    /// Whether the two share a point.
-    pub fn intersects(self, other: Self) -> bool {
-        self.lo <= other.hi && other.lo <= self.hi
-    }
-
     /// Widens an end that underflowed to zero although no factor is zero.
     fn after_product(self, x: Self, y: Self) -> Self {
         let ends = |i: Self| [i.lo, i.hi];
@@ -132,7 +119,7 @@ impl<N: Float> Interval<N> {
     }
 
     /// The enclosing f64 interval.
-    pub fn to_f64(self) -> Interval {
+    pub(crate) fn to_f64(self) -> Interval {
         Interval {
             lo: self.lo.below(),
             hi: self.hi.above(),

@@ -81,7 +81,7 @@ impl<S: Analytic> Mul for Jet<S> {
 }
 
 /// A scalar over which jets are computed.
-pub trait JetScalar: Analytic {
+pub(crate) trait JetScalar: Analytic {
     /// sin x / x with two derivatives, for 0 <= x <= pi.
     fn sinc_with_derivatives(self) -> [Self; 3];
 }

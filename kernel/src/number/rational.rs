@@ -14,6 +14,7 @@ pub const MAX_DIGITS: usize = 1000;
 
 /// Why a text is not an exact number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecimalError {
     /// The text is not a decimal literal.
     #[error("not a decimal number")]
@@ -28,6 +29,10 @@ pub enum DecimalError {
 
 /// The exact value of a decimal literal: sign, digits, point, digits, exponent. The sign, the
 /// point, one of the runs of digits and the exponent may be absent.
+///
+/// # Errors
+/// The text is not a decimal literal, its exponent exceeds [`MAX_EXPONENT`], or it has more than
+/// [`MAX_DIGITS`] digits.
 pub fn from_decimal(text: &str) -> Result<Rational, DecimalError> {
     let (negative, rest) = split_sign(text);
     let (mantissa, exponent) = match rest.find(['e', 'E']) {

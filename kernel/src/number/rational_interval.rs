@@ -78,7 +78,7 @@ fn root(x: &Rational, bits: usize, toward: Toward) -> Rational {
 
 impl RationalInterval {
     /// An exact number, for computation to so many bits.
-    pub fn exact(x: Rational, bits: usize) -> Self {
+    pub(crate) fn exact(x: Rational, bits: usize) -> Self {
         Self {
             ends: Some([x.clone(), x]),
             bits,
@@ -86,7 +86,7 @@ impl RationalInterval {
     }
 
     /// An f64, exactly; unknown if it is not finite.
-    pub fn of_double(x: f64) -> Self {
+    pub(crate) fn of_double(x: f64) -> Self {
         Self {
             ends: from_f64(x).map(|x| [x.clone(), x]),
             bits: LEAST,
@@ -99,7 +99,7 @@ impl RationalInterval {
     }
 
     /// The number nearest to the midpoint; NaN if nothing is known.
-    pub fn middle<N: Float>(&self) -> N {
+    pub(crate) fn middle<N: Float>(&self) -> N {
         let middle = |[lo, hi]: &[Rational; 2]| N::nearest(&((lo + hi) / Rational::from(2)));
         self.ends.as_ref().map_or(N::NAN, middle)
     }

@@ -121,7 +121,11 @@ pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> 
 }
 
 /// The roots, and all near misses that are close calls.
-pub fn isolate_closely<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
+pub(crate) fn isolate_closely<N: Float, F: Function<N>>(
+    f: &F,
+    breaks: &[N],
+    resolution: N,
+) -> Roots<N> {
     search(f, breaks, resolution, N::from_f64(CLOSE) * resolution)
 }
 

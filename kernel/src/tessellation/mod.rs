@@ -67,6 +67,7 @@ pub struct Mesh {
 
 /// Why a boundary cannot be tessellated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TessellationError {
     /// The chords of a face's edges cross, however finely the edges are divided.
     #[error("the edges of face {} are too close to one another for triangles", face.0)]
@@ -101,6 +102,10 @@ const DIVISIONS: usize = 1 << 16;
 const ROUNDS: usize = 40;
 
 /// The mesh of a boundary; `resolution` is the part's.
+///
+/// # Errors
+/// The edges of a face are too close for triangles or do not determine its inside, or the accuracy
+/// takes too many points.
 pub fn tessellate(
     brep: &Brep,
     accuracy: &Accuracy,
@@ -176,6 +181,9 @@ impl Mesh {
 
     /// The outward unit normals of the face at the corners of a triangle. At a cone's apex, that of
     /// the ruling through the middle of the opposite side.
+    ///
+    /// # Panics
+    /// The mesh has no such points, or the boundary no such face.
     pub fn normals(&self, brep: &Brep, triangle: &Triangle) -> [Vector3<f64>; 3] {
         let corners = triangle.corners.map(|c| self.points[c as usize]);
         [0, 1, 2].map(|k: usize| {

@@ -19,7 +19,7 @@ const GAPS: f64 = 0.3;
 
 impl DetectabilityPrior {
     /// The probability that a piece of an arc is found.
-    pub fn covered(&self, arc: &PredictedContour) -> f64 {
+    pub(crate) fn covered(&self, arc: &PredictedContour) -> f64 {
         let [_, broken, missed] = self.states(&arc.source)[usize::from(arc.outline)];
         (1.0 - missed - GAPS * broken).clamp(0.5, 1.0 - MIN_RATE)
     }
@@ -30,7 +30,7 @@ impl DetectabilityPrior {
     }
 
     /// The detection probabilities of an arc of a view.
-    pub fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
+    pub(crate) fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
         let alone = self.alone(arc);
         let known = self.codetection.get(&arc.source);
         let parent = known.and_then(|(source, given)| {
@@ -45,7 +45,7 @@ impl DetectabilityPrior {
     }
 
     /// Arcs in falling order of detectability, each after the one that it depends on.
-    pub fn order(&self, mut arcs: Vec<usize>, all: &[PredictedContour]) -> Vec<usize> {
+    pub(crate) fn order(&self, mut arcs: Vec<usize>, all: &[PredictedContour]) -> Vec<usize> {
         arcs.sort_by(|&a, &b| {
             let key = |i: usize| self.alone(&all[i]);
             let order = key(b).total_cmp(&key(a));

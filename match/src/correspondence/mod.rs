@@ -4,11 +4,11 @@
 //! are the mean distance from the contour, the angle to it, and the share of the contour that it
 //! covers. Segments that lie end to end are also a joint candidate, as a broken edge.
 
-pub mod clutter;
-pub mod detectability;
-pub mod endpoints;
+mod clutter;
+mod detectability;
+mod endpoints;
 pub mod predicted_contours;
-pub mod problem;
+pub(crate) mod problem;
 
 use crate::correspondence::clutter::Clutter;
 use crate::correspondence::endpoints::Endpoints;
@@ -27,7 +27,7 @@ const REACH: f64 = 6.0;
 /// The least cosine of the angle between the normals of an edge and of an arc.
 const COSINE: f64 = 0.96;
 /// The standard deviation of a segment's distance from its arc, in pixels.
-pub const ADJACENT: f64 = 1.5;
+pub(crate) const ADJACENT: f64 = 1.5;
 /// The standard deviations of an angle at best, in radians, and of an end, in pixels.
 const ASKEW: f64 = 1.0 / 48.0;
 const END: f64 = 1.5;
@@ -43,13 +43,13 @@ const PIECES: f64 = 1.6;
 const PARALLEL: f64 = 3.0;
 const OVERLAP: f64 = 0.3;
 /// Arcs shorter than this, in pixels, are not searched for.
-pub const SHORTEST: f64 = 10.0;
+pub(crate) const SHORTEST: f64 = 10.0;
 /// The covered share from which an edge is whole; below, it is broken.
-pub const WHOLE: f64 = 0.85;
+pub(crate) const WHOLE: f64 = 0.85;
 
 /// An edge pixel at a point of an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChoiceHit {
+pub(crate) struct ChoiceHit {
     /// The index of the arc's point.
     pub point: usize,
     /// The position of the edge pixel.
@@ -60,7 +60,7 @@ pub struct ChoiceHit {
 
 /// A candidate for an arc, with its edge pixels.
 #[derive(Clone, Debug)]
-pub struct FeatureChoice {
+pub(crate) struct FeatureChoice {
     /// The segments.
     pub segments: Vec<u32>,
     /// The covered share of the arc in the image.
@@ -79,7 +79,7 @@ pub struct FeatureChoice {
 
 /// An assignment problem with the meaning of its candidates.
 #[derive(Clone, Debug)]
-pub struct Correspondence {
+pub(crate) struct Correspondence {
     /// The indices of the arcs that are searched for, in the order of the problem's features.
     pub order: Vec<usize>,
     /// By feature: its length in the image, in pixels.

@@ -10,7 +10,7 @@ use premio_visibility::contours::{ViewError, contours};
 use std::collections::BTreeMap;
 
 /// The spacing of points along a contour, in pixels, and their greatest number.
-pub const APART: f64 = 3.0;
+pub(crate) const APART: f64 = 3.0;
 const MOST: usize = 400;
 /// How many points estimate the length of a piece.
 const FEW: usize = 12;
@@ -29,7 +29,7 @@ pub struct ContourSample {
 pub struct PredictedContour {
     /// What it is the image of.
     pub source: ArcSource,
-    /// The index of its edge in [`SoughtPart::strokes`]; none for a limb.
+    /// The index of its edge among the part's sharp edges; none for a limb.
     pub stroke: Option<usize>,
     /// Whether only one of its faces is turned to the eye.
     pub outline: bool,
@@ -40,7 +40,7 @@ pub struct PredictedContour {
 }
 
 /// The visible contours of a part at a pose, in an image with a width and height in pixels.
-pub fn arcs(
+pub(crate) fn arcs(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
     pose: &Isometry3<f64>,

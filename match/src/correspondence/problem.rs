@@ -63,18 +63,3 @@ impl ProblemRelation {
         self.scores.get(&pair).copied().unwrap_or_default()
     }
 }
-
-impl Problem {
-    /// The score of an assignment. It does not check that no piece is used twice.
-    pub fn score(&self, assignment: &[Option<usize>]) -> f64 {
-        let own = self.features.iter().zip(assignment).map(|(f, choice)| {
-            let parent = f.parent.is_some_and(|p| assignment[p].is_some());
-            f.score(*choice, parent)
-        });
-        let related = self.relations.iter().map(|r| {
-            let [a, b] = r.members.map(|m| assignment[m]);
-            a.zip(b).map_or(0.0, |pair| r.score(pair))
-        });
-        own.sum::<f64>() + related.sum::<f64>()
-    }
-}

@@ -37,7 +37,11 @@ impl SampleHit {
 const ONE: f64 = 4.0;
 
 /// Projects an edge sample; none if it lies behind the camera.
-pub fn seen(camera: &Pinhole, pose: &Isometry3<f64>, mark: &EdgeSample) -> Option<SampleHit> {
+pub(crate) fn seen(
+    camera: &Pinhole,
+    pose: &Isometry3<f64>,
+    mark: &EdgeSample,
+) -> Option<SampleHit> {
     let p = pose * mark.point;
     if p.z <= 0.0 {
         return None;
@@ -56,13 +60,13 @@ pub fn seen(camera: &Pinhole, pose: &Isometry3<f64>, mark: &EdgeSample) -> Optio
 }
 
 /// The eye in the part's frame.
-pub fn eye(pose: &Isometry3<f64>) -> Point3<f64> {
+pub(crate) fn eye(pose: &Isometry3<f64>) -> Point3<f64> {
     pose.inverse_transform_point(&Point3::origin())
 }
 
 /// The edge score of a pose.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct EdgeScore {
+pub(crate) struct EdgeScore {
     /// The log-likelihood ratio of the image's edges with the part at the pose against clutter.
     pub ratio: f64,
     /// The length of the visible contours in the image, in pixels, and the part of it that has an
@@ -77,15 +81,6 @@ pub struct EdgeScore {
 }
 
 impl EdgeScore {
-    /// The covered share of what is visible in the image.
-    pub fn share(&self) -> f64 {
-        if self.visible > 0.0 {
-            self.covered / self.visible
-        } else {
-            0.0
-        }
-    }
-
     /// The share of the visible contours that lies in the image.
     pub fn inside(&self) -> f64 {
         let all = self.visible + self.outside;
@@ -95,7 +90,7 @@ impl EdgeScore {
 
 /// The samples that are visible from an eye: those of edges that a cached view does not show as
 /// hidden, and those of limbs.
-pub fn visible<'a>(
+pub(crate) fn visible<'a>(
     part: &'a SoughtPart<'_>,
     view: &'a PartView,
     eye: Point3<f64>,
@@ -181,7 +176,7 @@ fn nearness(picture: &ImageFeatures, seen: &SampleHit) -> f64 {
 }
 
 /// The least cosine between the normal of an edge and that of its contour.
-pub const COSINE: f64 = 0.98;
+pub(crate) const COSINE: f64 = 0.98;
 /// The residual, in pixels, above which an edge counts less.
 const OFF: f64 = 1.0;
 
@@ -195,7 +190,7 @@ const AT_LEAST: f64 = 0.2;
 
 /// Whether so few of a subset of samples have an edge nearby that a pose needs no closer
 /// evaluation. Occlusion by the part itself is not evaluated yet.
-pub fn is_unlikely(
+pub(crate) fn is_unlikely(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -218,7 +213,7 @@ pub fn is_unlikely(
 
 /// The edge score of a pose. With the coarse tolerance it evaluates a subset of samples and `view`
 /// is a subsampled view.
-pub fn evidence(
+pub(crate) fn evidence(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,

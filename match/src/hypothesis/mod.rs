@@ -2,7 +2,7 @@
 //! to circular edges.
 
 pub mod edge_score;
-pub mod from_ellipses;
+mod from_ellipses;
 
 use crate::camera::Pinhole;
 use crate::hypothesis::edge_score::{COSINE, evidence, eye, is_unlikely, seen, visible};
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 /// A pose with its edge score.
 #[derive(Clone, Debug)]
-pub struct Hypothesis {
+pub(crate) struct Hypothesis {
     /// The pose.
     pub pose: Isometry3<f64>,
     /// The log-likelihood ratio of the image with it against clutter.
@@ -37,7 +37,7 @@ const MIN_RATE: f64 = -40.0;
 
 /// The proposed poses.
 #[derive(Clone, Debug)]
-pub struct Proposed {
+pub(crate) struct Proposed {
     /// The plausible ones.
     pub hypotheses: Vec<Hypothesis>,
     /// How many poses were tested.
@@ -56,7 +56,7 @@ struct TriedPoses {
 }
 
 /// The poses that chains and ellipses of an image propose, the most likely first.
-pub fn hypotheses(
+pub(crate) fn hypotheses(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -83,7 +83,7 @@ pub fn hypotheses(
 }
 
 /// Sorts by falling likelihood; equal ones by their chains.
-pub fn best_first(all: &mut [Hypothesis]) {
+pub(crate) fn best_first(all: &mut [Hypothesis]) {
     all.sort_by(|a, b| {
         let order = b.ratio.total_cmp(&a.ratio);
         order.then((a.chain, a.of).cmp(&(b.chain, b.of)))
@@ -91,7 +91,7 @@ pub fn best_first(all: &mut [Hypothesis]) {
 }
 
 /// The hypotheses whose poses differ from all more likely ones, at most `most`.
-pub fn distinct(
+pub(crate) fn distinct(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
     all: Vec<Hypothesis>,
@@ -134,7 +134,7 @@ fn is_one_of(images: &[[Point2<f64>; 4]], known: &[Point2<f64>; 4]) -> bool {
 }
 
 /// Whether two poses are equal up to the part's symmetries.
-pub fn is_same(
+pub(crate) fn is_same(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
     pose: &Isometry3<f64>,
@@ -145,7 +145,7 @@ pub fn is_same(
 }
 
 /// The least share of the visible contours that lies in the image.
-pub const INSIDE: f64 = 0.3;
+pub(crate) const INSIDE: f64 = 0.3;
 /// Poses are equal if their probe points differ by at most this share of the part's size in the
 /// image.
 const SAME: f64 = 0.04;
@@ -182,7 +182,7 @@ fn of_chain(
 }
 
 /// A pose that a chain of the image and one of the part propose, if its coarse score is plausible.
-pub fn plausible(
+pub(crate) fn plausible(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -241,7 +241,7 @@ fn fits(
 
 /// The pose after refinement to nearby edges, with its score; `reaches` are the search radii in
 /// pixels, round by round.
-pub fn drawn(
+pub(crate) fn drawn(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -273,7 +273,7 @@ pub fn drawn(
 ///
 /// Edges that lie side by side attract samples to wrong positions. A start that is rotated or
 /// translated a little may converge to a better pose.
-pub fn settled(
+pub(crate) fn settled(
     part: &SoughtPart<'_>,
     picture: &ImageFeatures,
     camera: &Pinhole,
@@ -310,7 +310,7 @@ pub fn settled(
 }
 
 /// The search radii for edges around samples, in pixels, round by round.
-pub const REACHES: [f64; 5] = [12.0, 8.0, 5.0, 3.0, 2.0];
+pub(crate) const REACHES: [f64; 5] = [12.0, 8.0, 5.0, 3.0, 2.0];
 
 /// The approximate number of samples that the first rounds use.
 const MANY: usize = 300;

@@ -5,10 +5,10 @@ mod downsampled;
 mod edges;
 mod lines;
 
-pub use corners::{LineCorner, LinePath, chains};
+pub(crate) use corners::{LinePath, chains};
 pub use downsampled::{DownsampledImage, downsampled};
-pub use edges::{EdgeHit, Edges, PIECE, Reach, bin};
-pub use lines::{ImageLine, lines};
+pub(crate) use edges::{Edges, PIECE, Reach, bin};
+pub(crate) use lines::{ImageLine, lines};
 
 use premio_detect::{Detection, Detector, Grey, Mask, PixelMask, SegmentShape};
 
@@ -16,16 +16,16 @@ use premio_detect::{Detection, Detector, Grey, Mask, PixelMask, SegmentShape};
 #[derive(Clone, Debug)]
 pub struct ImageFeatures {
     /// Its width and height in pixels.
-    pub size: [usize; 2],
+    pub(crate) size: [usize; 2],
     /// The result of the detector.
-    pub detection: Detection,
+    pub(crate) detection: Detection,
     /// Its lines, the longest first.
-    pub lines: Vec<ImageLine>,
+    pub(crate) lines: Vec<ImageLine>,
     /// Its edge pixels indexed by position and orientation.
-    pub edges: Edges,
+    pub(crate) edges: Edges,
     /// The residual of edge pixels from their lines, in pixels: the median of the root mean squares
     /// of long straight segments.
-    pub straightness: f64,
+    pub(crate) straightness: f64,
 }
 
 impl ImageFeatures {
@@ -44,6 +44,9 @@ impl ImageFeatures {
     }
 
     /// The ends of a segment; of a whole ellipse those of its longer axis.
+    ///
+    /// # Panics
+    /// The image has no such segment.
     pub fn ends(&self, segment: u32) -> [[f64; 2]; 2] {
         match self.detection.segments[segment as usize].shape {
             SegmentShape::Line { ends } | SegmentShape::Arc { ends, .. } => ends,

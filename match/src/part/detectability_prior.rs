@@ -134,7 +134,7 @@ impl DetectabilityPrior {
 
     /// The probabilities that the junction of two features is preserved where both are found, and
     /// by chance.
-    pub fn junction(&self, a: &ArcSource, b: &ArcSource) -> [f64; 2] {
+    pub(crate) fn junction(&self, a: &ArcSource, b: &ArcSource) -> [f64; 2] {
         if self.uniform {
             return [0.5; 2];
         }

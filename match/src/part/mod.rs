@@ -7,10 +7,10 @@ mod edge_samples;
 mod symmetry;
 mod visibility_cache;
 
-pub use chain::PartChain;
+pub(crate) use chain::PartChain;
 use edge_samples::SampledEdges;
-pub use edge_samples::{EdgeSample, PartView, SampledEdge};
-pub use symmetry::Symmetry;
+pub(crate) use edge_samples::{EdgeSample, PartView, SampledEdge};
+pub(crate) use symmetry::Symmetry;
 
 use crate::part::detectability_prior::DetectabilityPrior;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -26,33 +26,33 @@ use visibility_cache::VisibilityCache;
 #[derive(Debug)]
 pub struct SoughtPart<'a> {
     /// Its boundary.
-    pub brep: &'a Brep,
+    pub(crate) brep: &'a Brep,
     /// Its resolution.
-    pub resolution: f64,
+    pub(crate) resolution: f64,
     /// The middle of its box.
     pub centre: Point3<f64>,
     /// Half the diagonal of its box.
     pub radius: f64,
     /// Its sharp edges: those along which the normal jumps.
-    pub strokes: Vec<SampledEdge>,
+    pub(crate) strokes: Vec<SampledEdge>,
     /// Samples along them.
-    pub marks: Vec<EdgeSample>,
+    pub(crate) marks: Vec<EdgeSample>,
     /// The rotational symmetries of the part; the first is the identity.
-    pub symmetries: Vec<Symmetry>,
+    pub(crate) symmetries: Vec<Symmetry>,
     /// The axis of a part of revolution, all of whose edges are whole circles about it: z, through
     /// the origin.
     pub axis: Option<Frame>,
     /// The indices of circular edges, whole or not: one of each set that is equivalent by symmetry.
-    pub circles: Vec<usize>,
+    pub(crate) circles: Vec<usize>,
     /// The chains of straight edges with one edge, and with two, between their corners: one of each
     /// set that is equivalent by symmetry.
-    pub chains: [Vec<EdgePath>; 2],
+    pub(crate) chains: [Vec<EdgePath>; 2],
     views: VisibilityCache,
 }
 
 /// A chain of three or four straight edges.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EdgePath {
+pub(crate) struct EdgePath {
     /// The indices of its edges: the one that leaves A, those from A to B, the one that leaves B.
     pub strokes: Vec<usize>,
     /// Their geometry.
@@ -85,7 +85,7 @@ impl<'a> SoughtPart<'a> {
     }
 
     /// Whether the part can propose poses: by chains of straight edges, or circles.
-    pub fn proposes(&self) -> bool {
+    pub(crate) fn proposes(&self) -> bool {
         self.chains.iter().any(|c| !c.is_empty()) || !self.circles.is_empty()
     }
 
@@ -107,7 +107,7 @@ impl<'a> SoughtPart<'a> {
 
     /// Four probe points that determine the pose: the centre and three points around it. For a part
     /// of revolution all lie on the axis, because the rotation about it is free.
-    pub fn probes(&self) -> [Point3<f64>; 4] {
+    pub(crate) fn probes(&self) -> [Point3<f64>; 4] {
         if let Some(axis) = &self.axis {
             return [0.0, 1.0, -1.0, 0.5].map(|k| axis.point(0.0, 0.0, k * self.radius));
         }
@@ -120,17 +120,17 @@ impl<'a> SoughtPart<'a> {
     }
 
     /// The cached view from the direction nearest to an eye, in the part's frame.
-    pub fn view(&self, eye: &Point3<f64>) -> &PartView {
+    pub(crate) fn view(&self, eye: &Point3<f64>) -> &PartView {
         self.views.from(self, eye)
     }
 
     /// The same with only every [`Self::stride`]-th sample.
-    pub fn glimpse(&self, eye: &Point3<f64>) -> &PartView {
+    pub(crate) fn glimpse(&self, eye: &Point3<f64>) -> &PartView {
         self.views.glimpse(self, eye)
     }
 
     /// The step between the samples that a coarse score uses.
-    pub fn stride(&self) -> usize {
+    pub(crate) fn stride(&self) -> usize {
         match self.marks.len() {
             0..=FEW => 1,
             count => THIRD.max(count / MANY),

@@ -1,13 +1,12 @@
 //! The pose of a part in the camera's frame: minimal solvers propose poses, and least squares
 //! refines them.
 
-pub mod circle;
+pub(crate) mod circle;
 mod equations;
-pub mod limb;
-pub mod p2p2l;
+pub(crate) mod p2p2l;
 pub mod p3l;
 pub mod p3p;
 mod polynomial;
-pub mod refine;
+pub(crate) mod refine;
 #[cfg(test)]
 mod tests;

@@ -55,7 +55,7 @@ pub struct SearchStats {
 
 impl SearchStats {
     /// Pruned over opened.
-    pub fn ratio(&self) -> f64 {
+    pub(crate) fn ratio(&self) -> f64 {
         if self.opened == 0 {
             0.0
         } else {
@@ -66,7 +66,7 @@ impl SearchStats {
 
 /// The best assignment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// By feature: the assigned candidate, or none if it is missed.
     pub assignment: Assignment,
     /// Its score.
@@ -79,7 +79,7 @@ pub struct Solution {
 
 /// The best assignment of a problem. At most `most` paths are opened, and as many again by branch
 /// and bound where rounds end without a result.
-pub fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
+pub(crate) fn search(problem: &Problem, strategy: Strategy, most: u64) -> Solution {
     let mut terms = Potentials::new(problem);
     let effort = SearchStats {
         eliminated: dead_end_elimination::eliminate(&mut terms),

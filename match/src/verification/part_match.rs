@@ -118,7 +118,7 @@ pub struct PartMatch {
     /// its uncertainty.
     pub fitted: f64,
     /// The sums of the scores of relations for and against it.
-    pub relations: [f64; 2],
+    pub(crate) relations: [f64; 2],
     /// The correspondences, in the order of the search.
     pub pairs: Vec<FeaturePair>,
     /// The work of the search.
@@ -128,12 +128,12 @@ pub struct PartMatch {
     /// The predicted arcs at the pose.
     pub arcs: Vec<PredictedContour>,
     /// By correspondence: the edge points that the pose is fitted to.
-    pub pulls: Vec<Vec<PointToLine>>,
+    pub(crate) pulls: Vec<Vec<PointToLine>>,
 }
 
 impl PartMatch {
     /// The share of the predicted visible length in the image that edges cover.
-    pub fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         let all = self.length();
         let covered = self.pairs.iter().map(|p| {
             let share = p.found.as_ref().map_or(0.0, |f| f.share.min(1.0));
@@ -147,7 +147,7 @@ impl PartMatch {
     }
 
     /// The share of the visible contours that lies in the image.
-    pub fn inside(&self) -> f64 {
+    pub(crate) fn inside(&self) -> f64 {
         let all: f64 = self.arcs.iter().map(|a| a.length).sum();
         let inside: f64 = self.pairs.iter().map(|p| p.length).sum();
         if all > 0.0 {
@@ -158,7 +158,7 @@ impl PartMatch {
     }
 
     /// The log posterior odds of the part at this pose against clutter and other things.
-    pub fn weight(&self) -> f64 {
+    pub(crate) fn weight(&self) -> f64 {
         self.ratio + self.odds
     }
 
@@ -172,13 +172,13 @@ impl PartMatch {
     }
 
     /// Whether a thing that lacks the rest of the part is likelier than the part.
-    pub fn is_piece(&self) -> bool {
+    pub(crate) fn is_piece(&self) -> bool {
         self.whole() < 0.0
     }
 
     /// The probability of the part against the likelier alternative: another thing, or a piece of
     /// the part.
-    pub fn probability(&self) -> f64 {
+    pub(crate) fn probability(&self) -> f64 {
         let odds = (self.weight() / WEIGHTS.evidence_tempering).min(self.whole());
         1.0 / (1.0 + (-odds).exp())
     }
@@ -196,25 +196,25 @@ impl PartMatch {
 
     /// The share of the visible length in the image whose features are missed, or whose edges
     /// only run next to them.
-    pub fn missed(&self) -> f64 {
+    pub(crate) fn missed(&self) -> f64 {
         let missed = self.pairs.iter().filter(|p| p.is_missed());
         let missed: f64 = missed.map(|p| p.length).sum();
         missed / self.length().max(f64::MIN_POSITIVE)
     }
 
     /// How many visible vertices edges overrun.
-    pub fn past(&self) -> u32 {
+    pub(crate) fn past(&self) -> u32 {
         let found = self.pairs.iter().filter_map(|p| p.found.as_ref());
         found.map(|f| f.ends[1]).sum()
     }
 
     /// The visible length in the image, in pixels.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.pairs.iter().map(|p| p.length).sum()
     }
 
     /// Whether enough is found to determine the pose of a part.
-    pub fn is_determined(&self, part: &SoughtPart<'_>) -> bool {
+    pub(crate) fn is_determined(&self, part: &SoughtPart<'_>) -> bool {
         let fewest = WEIGHTS.fewest_features(part.axis.is_some());
         let enough = self.length() >= WEIGHTS.min_length && self.inside() >= INSIDE;
         self.found() >= fewest && self.fitted > WEIGHTS.min_pose_information && enough
@@ -293,7 +293,7 @@ impl SearchResult {
 impl SearchResult {
     /// The accepted matches that use other edges of the image: instances of the part, the likeliest
     /// first. The image may show more of them, because only the best poses are searched.
-    pub fn instances(&self) -> Vec<&PartMatch> {
+    pub(crate) fn instances(&self) -> Vec<&PartMatch> {
         let mut known: Vec<&PartMatch> = Vec::new();
         for found in self.matches.iter().filter(|m| m.is_accepted()) {
             if known.iter().all(|other| found.overlap(other) < OVERLAP) {

@@ -29,7 +29,7 @@ pub struct SystematicOffset {
 impl SystematicOffset {
     /// The residuals of all features of a part at a pose, and of each; none for features without
     /// edges.
-    pub fn new(
+    pub(crate) fn new(
         camera: &Pinhole,
         pose: &Isometry3<f64>,
         features: &[Vec<PointToLine>],

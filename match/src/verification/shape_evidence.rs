@@ -63,7 +63,7 @@ pub struct ShapeEvidence {
 impl ShapeEvidence {
     /// The evidence of a match's edges. Features that are found so badly that they count against
     /// the part are left out.
-    pub fn new(part: &SoughtPart<'_>, camera: &Pinhole, found: &PartMatch) -> Self {
+    pub(crate) fn new(part: &SoughtPart<'_>, camera: &Pinhole, found: &PartMatch) -> Self {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);
         let features = well.map(|(pair, pulls)| (pair.source, pulls.as_slice()));
@@ -104,7 +104,7 @@ impl ShapeEvidence {
     }
 
     /// The log-likelihood ratio of the part against things of its kind.
-    pub fn ratio(&self) -> f64 {
+    pub(crate) fn ratio(&self) -> f64 {
         self.determined - self.denied
     }
 }

@@ -6,7 +6,7 @@ use crate::image_arcs::flatten::nearest_on;
 
 /// A pixel of an arc.
 #[derive(Clone, Copy, Debug)]
-pub struct InkPixel {
+pub(crate) struct InkPixel {
     /// The column.
     pub x: i32,
     /// The row.
@@ -29,25 +29,24 @@ pub struct ArcRaster {
     width: usize,
     height: usize,
     /// The pixels, arc by arc, in the order in which the arcs run.
-    pub pixels: Vec<InkPixel>,
+    pub(crate) pixels: Vec<InkPixel>,
     /// By image pixel: the index of the last of `pixels` in it.
     last: Vec<u32>,
     /// By arc: the range of its pixels.
-    pub ranges: Vec<std::ops::Range<usize>>,
+    pub(crate) ranges: Vec<std::ops::Range<usize>>,
     /// By arc: its length within the image, and the length at which it enters the image.
-    pub spans: Vec<[f64; 2]>,
+    pub(crate) spans: Vec<[f64; 2]>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl ArcRaster {
-    /// The pixels of arcs in an image of this size.
-    pub fn new(arcs: &[PredictedArc], size: [usize; 2]) -> Self {
-        Self::within(arcs, size, Vec::new())
-    }
-
     /// The pixels of arcs, in reused memory, which [`Self::into_memory`] returns.
-    pub fn within(arcs: &[PredictedArc], [width, height]: [usize; 2], mut last: Vec<u32>) -> Self {
+    pub(crate) fn within(
+        arcs: &[PredictedArc],
+        [width, height]: [usize; 2],
+        mut last: Vec<u32>,
+    ) -> Self {
         last.clear();
         last.resize(width * height, NONE);
         let mut ink = Self {
@@ -74,7 +73,7 @@ impl ArcRaster {
     }
 
     /// Returns its memory.
-    pub fn into_memory(self) -> Vec<u32> {
+    pub(crate) fn into_memory(self) -> Vec<u32> {
         self.last
     }
 
@@ -144,7 +143,7 @@ impl ArcRaster {
     }
 
     /// The pixels of arcs in a pixel of the image.
-    pub fn at(&self, x: i64, y: i64) -> impl Iterator<Item = &InkPixel> {
+    pub(crate) fn at(&self, x: i64, y: i64) -> impl Iterator<Item = &InkPixel> {
         let inside = x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height;
         let first = if inside {
             self.last[y as usize * self.width + x as usize]
@@ -156,7 +155,7 @@ impl ArcRaster {
     }
 
     /// The width and the height of the image.
-    pub fn size(&self) -> [usize; 2] {
+    pub(crate) fn size(&self) -> [usize; 2] {
         [self.width, self.height]
     }
 

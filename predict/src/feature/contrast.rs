@@ -24,13 +24,13 @@ pub struct Contrast {
 
 impl Contrast {
     /// The difference of the sides in levels, clipped to the range of a sensor with this top level.
-    pub fn difference(&self, top: f64) -> f64 {
+    pub(crate) fn difference(&self, top: f64) -> f64 {
         (self.left.clamp(0.0, top) - self.right.clamp(0.0, top)).abs()
     }
 }
 
 /// The regions on the sides of an arc with a number: by section, the left and the right one.
-pub fn sides(regions: &Regions, number: usize, arc: &PredictedArc) -> Vec<[u32; 2]> {
+pub(crate) fn sides(regions: &Regions, number: usize, arc: &PredictedArc) -> Vec<[u32; 2]> {
     if let Some(region) = arc.within {
         return vec![[region; 2]];
     }
@@ -41,7 +41,7 @@ pub fn sides(regions: &Regions, number: usize, arc: &PredictedArc) -> Vec<[u32; 
 }
 
 /// The brightness along an arc with a number, within a part of it.
-pub fn contrast(
+pub(crate) fn contrast(
     shading: &Shading<'_>,
     regions: &Regions,
     number: usize,

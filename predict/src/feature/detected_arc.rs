@@ -30,7 +30,7 @@ impl DetectionState {
     pub const ALL: [Self; 3] = [Self::Whole, Self::Broken, Self::Missed];
 
     /// Its index in [`Self::ALL`].
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self as usize
     }
 
@@ -75,7 +75,7 @@ struct Mark {
 }
 
 /// What a detector found of each arc.
-pub fn evidence(
+pub(crate) fn evidence(
     detection: &Detection,
     detector: &Detector,
     criteria: &Criteria,

@@ -32,7 +32,7 @@ struct Step {
 }
 
 /// By region: its boundaries.
-pub fn boundaries(
+pub(crate) fn boundaries(
     arcs: &[PredictedArc],
     nodes: &Nodes,
     regions: &Regions,
@@ -203,7 +203,7 @@ fn others(junction: &PredictedJunction, arc: u32) -> BTreeSet<u32> {
 }
 
 /// The longest chains of arcs through junctions of two.
-pub fn chains(count: usize, junctions: &[PredictedJunction]) -> Vec<ArcChain> {
+pub(crate) fn chains(count: usize, junctions: &[PredictedJunction]) -> Vec<ArcChain> {
     let ends = ends_of(count, junctions);
     let next = |arc: u32, junction: Option<u32>| -> Option<u32> {
         let junction = &junctions[junction? as usize];
@@ -250,7 +250,7 @@ pub fn chains(count: usize, junctions: &[PredictedJunction]) -> Vec<ArcChain> {
 
 /// Three arcs, the middle one of which has a junction with the others at its ends (Henikoff and
 /// Shapiro 1990).
-pub fn triplets(count: usize, junctions: &[PredictedJunction]) -> Vec<[u32; 3]> {
+pub(crate) fn triplets(count: usize, junctions: &[PredictedJunction]) -> Vec<[u32; 3]> {
     let mut found = BTreeSet::new();
     for (arc, ends) in ends_of(count, junctions).iter().enumerate() {
         let arc = arc as u32;

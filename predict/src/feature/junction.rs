@@ -15,7 +15,7 @@ const TURN: f64 = 3.0;
 const STRAIGHT: f64 = PI / 15.0;
 /// The greatest distance, in pixels, of the end of a found branch from its junction, in addition to
 /// the detector's margin.
-pub const NEAR: f64 = 3.0;
+pub(crate) const NEAR: f64 = 3.0;
 
 /// The form of a junction.
 #[derive(
@@ -67,14 +67,14 @@ pub struct PredictedJunction {
 
 impl PredictedJunction {
     /// Whether the detector found all branches up to the junction.
-    pub fn is_found(&self) -> bool {
+    pub(crate) fn is_found(&self) -> bool {
         self.branches.iter().all(|b| b.found)
     }
 }
 
 /// The nodes: the points at which sections of arcs end.
 #[derive(Clone, Debug)]
-pub struct Nodes {
+pub(crate) struct Nodes {
     /// Their positions.
     pub places: Vec<[f64; 2]>,
     /// By arc: its nodes, at the start, its stops and the end.
@@ -120,7 +120,7 @@ impl Nodes {
 }
 
 /// The junctions of the arcs that may be found.
-pub fn junctions(
+pub(crate) fn junctions(
     arcs: &[PredictedArc],
     nodes: &Nodes,
     evidence: &[DetectedArc],

@@ -75,7 +75,7 @@ impl fmt::Display for Reason {
 
 /// The quantities that determine reasons.
 #[derive(Clone, Copy, Debug)]
-pub struct Measure {
+pub(crate) struct Measure {
     /// The sensor's top level.
     pub top: f64,
     /// The difference of levels that the detector's threshold takes.
@@ -87,7 +87,7 @@ pub struct Measure {
 }
 
 /// Why an arc is not whole; none where it is.
-pub fn reason(
+pub(crate) fn reason(
     arc: usize,
     evidence: &[DetectedArc],
     contrast: &[Contrast],

@@ -15,7 +15,7 @@ pub struct Bitmap {
 
 impl Bitmap {
     /// The empty set of an image of this size.
-    pub fn new([width, height]: [usize; 2]) -> Self {
+    pub(crate) fn new([width, height]: [usize; 2]) -> Self {
         let words = width.div_ceil(64);
         Self {
             width,
@@ -26,7 +26,7 @@ impl Bitmap {
     }
 
     /// Adds a pixel, where it is in the image.
-    pub fn add(&mut self, x: i64, y: i64) {
+    pub(crate) fn add(&mut self, x: i64, y: i64) {
         let inside = |v: i64, size: usize| v >= 0 && v < size as i64;
         if inside(x, self.width) && inside(y, self.height) {
             let (x, y) = (x as usize, y as usize);
@@ -71,7 +71,7 @@ impl Bitmap {
     }
 
     /// The runs of pixels in a row.
-    pub fn runs(&self, y: usize) -> Vec<Range<u32>> {
+    pub(crate) fn runs(&self, y: usize) -> Vec<Range<u32>> {
         let row = &self.bits[y * self.words..(y + 1) * self.words];
         let mut runs: Vec<Range<u32>> = Vec::new();
         for (k, &word) in row.iter().enumerate() {
@@ -94,7 +94,7 @@ impl Bitmap {
     }
 
     /// Converts it to a domain.
-    pub fn domain(&self) -> PixelMask {
+    pub(crate) fn domain(&self) -> PixelMask {
         PixelMask::of_rows(self.width, (0..self.height).map(|y| self.runs(y)))
     }
 }

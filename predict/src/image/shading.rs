@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// A point of a face on a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewedPoint {
+pub(crate) struct ViewedPoint {
     /// The point.
     pub point: Point3<f64>,
     /// The unit direction of the line of sight, into the scene.
@@ -30,6 +30,9 @@ pub struct Finishes {
 
 impl Finishes {
     /// The materials of the faces of a part under conditions.
+    ///
+    /// # Errors
+    /// A surface of the conditions names a face that the part does not have.
     pub fn new(subject: &PreparedPart<'_>, conditions: &Conditions) -> Result<Self, StageError> {
         let count = subject.brep.topology.faces.len();
         let mut by_face = vec![0; count];
@@ -69,7 +72,7 @@ impl Beam {
 
 /// The radiance from a point to the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Radiance {
+pub(crate) struct Radiance {
     /// All of it, I^r.
     pub total: f64,
     /// The specular part of it.
@@ -94,7 +97,7 @@ pub struct Shading<'s> {
 
 impl<'s> Shading<'s> {
     /// The light of a scene under conditions.
-    pub fn new(
+    pub(crate) fn new(
         stage: &'s LitScene<'s>,
         finishes: &'s Finishes,
         conditions: &Conditions,
@@ -123,7 +126,7 @@ impl<'s> Shading<'s> {
 
     /// The radiance of a point of a face towards `viewer`, a unit vector, where the lights of `lit`
     /// reach it.
-    pub fn radiance(
+    pub(crate) fn radiance(
         &self,
         face: FaceId,
         p: &Point3<f64>,
@@ -162,7 +165,7 @@ impl<'s> Shading<'s> {
 
     /// The point of a face that is visible at a point of the image, with the viewing direction.
     /// `hint` is its approximate distance, and becomes the exact one.
-    pub fn place(&self, at: [f64; 2], face: FaceId, hint: &mut f64) -> Option<ViewedPoint> {
+    pub(crate) fn place(&self, at: [f64; 2], face: FaceId, hint: &mut f64) -> Option<ViewedPoint> {
         let projection = self.stage.view.scene.projection;
         let sight = projection.line_of_sight(&Point2::from(at));
         let far = front(self.stage.subject.brep, face, &sight, *hint)?;
@@ -174,12 +177,12 @@ impl<'s> Shading<'s> {
     }
 
     /// Grey levels, before noise and steps, at a point of the image where `seen` is seen.
-    pub fn level(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> f64 {
+    pub(crate) fn level(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> f64 {
         self.levels(at, seen, hint).total
     }
 
     /// The grey levels with their specular part.
-    pub fn levels(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> Radiance {
+    pub(crate) fn levels(&self, at: [f64; 2], seen: &RegionSample, hint: &mut f64) -> Radiance {
         let placed = seen
             .face
             .and_then(|face| Some((face, self.place(at, face, hint)?)));
@@ -208,23 +211,23 @@ impl<'s> Shading<'s> {
     }
 
     /// The number of lights.
-    pub fn lights(&self) -> usize {
+    pub(crate) fn lights(&self) -> usize {
         self.stage.lights.len()
     }
 
     /// The surface of a face.
-    pub fn surface(&self, face: FaceId) -> &premio_kernel::geometry::surface::Surface {
+    pub(crate) fn surface(&self, face: FaceId) -> &premio_kernel::geometry::surface::Surface {
         self.stage.subject.brep.surface(face)
     }
 
     /// Whether a face has specular reflection.
-    pub fn mirrors(&self, face: FaceId) -> bool {
+    pub(crate) fn mirrors(&self, face: FaceId) -> bool {
         self.surfaces[self.finishes.by_face[face.index()]].is_specular()
     }
 
     /// N·H at the point of a face that is visible at a point of the image: 1 at perfect specular
     /// reflection. None where the light is behind the face.
-    pub fn mirrored(
+    pub(crate) fn mirrored(
         &self,
         at: [f64; 2],
         face: FaceId,
@@ -242,7 +245,7 @@ impl<'s> Shading<'s> {
     }
 
     /// The distance of a point from the start of its line of sight.
-    pub fn distance(&self, p: &Point3<f64>) -> f64 {
+    pub(crate) fn distance(&self, p: &Point3<f64>) -> f64 {
         (p - self.stage.view.scene.projection.origin()).norm()
     }
 

@@ -64,7 +64,7 @@ pub enum ArcSource {
 
 impl ArcSource {
     /// The edge of the part that the arc or its shadow is of.
-    pub fn edge(&self) -> Option<EdgeId> {
+    pub(crate) fn edge(&self) -> Option<EdgeId> {
         match *self {
             Self::Edge { edge } | Self::EdgeShadow { edge, .. } => Some(EdgeId(edge)),
             _ => None,
@@ -72,7 +72,7 @@ impl ArcSource {
     }
 
     /// The face whose limb it is, or on which it lies.
-    pub fn face(&self) -> Option<FaceId> {
+    pub(crate) fn face(&self) -> Option<FaceId> {
         match *self {
             Self::Limb { face, .. } => Some(FaceId(face)),
             _ => self.ground(),
@@ -80,7 +80,7 @@ impl ArcSource {
     }
 
     /// For a shadow: the face whose limb casts it.
-    pub fn caster(&self) -> Option<FaceId> {
+    pub(crate) fn caster(&self) -> Option<FaceId> {
         match *self {
             Self::LimbShadow { caster, .. } => Some(FaceId(caster)),
             _ => None,
@@ -88,7 +88,7 @@ impl ArcSource {
     }
 
     /// The light that it depends on.
-    pub fn light(&self) -> Option<u32> {
+    pub(crate) fn light(&self) -> Option<u32> {
         match *self {
             Self::Edge { .. } | Self::Limb { .. } => None,
             Self::EdgeShadow { light, .. }
@@ -99,7 +99,7 @@ impl ArcSource {
     }
 
     /// The face in whose inside it lies.
-    pub fn ground(&self) -> Option<FaceId> {
+    pub(crate) fn ground(&self) -> Option<FaceId> {
         match *self {
             Self::EdgeShadow { face, .. }
             | Self::LimbShadow { face, .. }
@@ -163,14 +163,14 @@ pub enum ArcSide {
 
 impl ArcSide {
     /// The side of the line from `a` to `b` that `p` is on.
-    pub fn new(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Self {
+    pub(crate) fn new(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Self {
         let cross = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
         // With y down a point on the right turns clockwise on the page, which is positive.
         if cross > 0.0 { Self::Right } else { Self::Left }
     }
 
     /// The other one.
-    pub fn other(self) -> Self {
+    pub(crate) fn other(self) -> Self {
         match self {
             Self::Left => Self::Right,
             Self::Right => Self::Left,

@@ -186,7 +186,7 @@ pub fn nearest_on(a: &[f64; 2], b: &[f64; 2], p: &[f64; 2]) -> NearestOnSegment 
 
 impl Polyline {
     /// Adds a point at its end.
-    pub fn add(&mut self, t: f64, [x, y]: [f64; 2], depth: f64) {
+    pub(crate) fn add(&mut self, t: f64, [x, y]: [f64; 2], depth: f64) {
         let image = Point2::new(x, y);
         self.push(t, ProjectedPoint { image, depth });
     }
@@ -210,19 +210,19 @@ impl Polyline {
     }
 
     /// The segments, each by its end points.
-    pub fn segments(&self) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> + '_ {
+    pub(crate) fn segments(&self) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> + '_ {
         self.points.windows(2).map(|w| [w[0], w[1]]).enumerate()
     }
 
     /// Its length in pixels.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.segments()
             .map(|(_, [a, b])| (b[0] - a[0]).hypot(b[1] - a[1]))
             .sum()
     }
 
     /// The parameter at a point: equal steps in space have shorter images the deeper they are.
-    pub fn parameter(&self, at: PolylinePoint) -> f64 {
+    pub(crate) fn parameter(&self, at: PolylinePoint) -> f64 {
         let (i, s) = (at.segment, at.fraction);
         let [z0, z1] = [self.depths[i], self.depths[i + 1]];
         let [t0, t1] = [self.parameters[i], self.parameters[i + 1]];
@@ -234,14 +234,14 @@ impl Polyline {
     }
 
     /// The position of a point.
-    pub fn position(&self, at: PolylinePoint) -> [f64; 2] {
+    pub(crate) fn position(&self, at: PolylinePoint) -> [f64; 2] {
         let (i, s) = (at.segment, at.fraction);
         let [a, b] = [self.points[i], self.points[i + 1]];
         [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])]
     }
 
     /// The point at a length along the polyline, in pixels; the end beyond.
-    pub fn place_at(&self, along: f64) -> PolylinePoint {
+    pub(crate) fn place_at(&self, along: f64) -> PolylinePoint {
         let mut left = along.max(0.0);
         for (i, [a, b]) in self.segments() {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -260,17 +260,17 @@ impl Polyline {
     }
 
     /// The parameter at a length along it, in pixels.
-    pub fn parameter_at(&self, along: f64) -> f64 {
+    pub(crate) fn parameter_at(&self, along: f64) -> f64 {
         self.parameter(self.place_at(along))
     }
 
     /// The position at a length along it, in pixels.
-    pub fn point_at(&self, along: f64) -> [f64; 2] {
+    pub(crate) fn point_at(&self, along: f64) -> [f64; 2] {
         self.position(self.place_at(along))
     }
 
     /// The point nearest to a given one.
-    pub fn nearest(&self, p: &[f64; 2]) -> Option<NearestPoint> {
+    pub(crate) fn nearest(&self, p: &[f64; 2]) -> Option<NearestPoint> {
         let mut best: Option<NearestPoint> = None;
         for (i, [a, b]) in self.segments() {
             let NearestOnSegment { fraction, square } = nearest_on(&a, &b, p);
@@ -292,7 +292,7 @@ impl Polyline {
     }
 
     /// Inserts the position of a point of the curve.
-    pub fn insert(&mut self, at: PolylinePoint, p: [f64; 2]) {
+    pub(crate) fn insert(&mut self, at: PolylinePoint, p: [f64; 2]) {
         let t = self.parameter(at);
         let depth = self.depth(at);
         let i = at.segment;
@@ -302,7 +302,7 @@ impl Polyline {
     }
 
     /// The part from one point to another.
-    pub fn part(&self, from: PolylinePoint, to: PolylinePoint) -> Self {
+    pub(crate) fn part(&self, from: PolylinePoint, to: PolylinePoint) -> Self {
         let mut part = Self::default();
         let mut add = |place: PolylinePoint| {
             let [x, y] = self.position(place);
@@ -323,7 +323,7 @@ impl Polyline {
     }
 
     /// The point at half its length.
-    pub fn middle(&self) -> Option<PolylinePoint> {
+    pub(crate) fn middle(&self) -> Option<PolylinePoint> {
         let mut left = 0.5 * self.length();
         for (i, [a, b]) in self.segments() {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);

@@ -18,6 +18,7 @@ use std::collections::HashMap;
 
 /// Why nothing can be predicted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StageError {
     /// The setup cannot be used.
     #[error(transparent)]
@@ -54,7 +55,7 @@ impl StageError {
 
 /// A camera with its projection.
 #[derive(Clone, Debug)]
-pub struct Eye {
+pub(crate) struct Eye {
     /// The camera.
     pub camera: ViewCamera,
     /// Its projection.
@@ -70,7 +71,7 @@ impl Eye {
 
 /// A light with its eyes.
 #[derive(Clone, Debug)]
-pub struct LightEyes {
+pub(crate) struct LightEyes {
     /// The light.
     pub source: light::LightSource,
     /// Its eyes.
@@ -80,7 +81,7 @@ pub struct LightEyes {
 /// The eyes of a setup: the camera's, and those of the lights. A light within the bounding ball of
 /// the part has two eyes, which look in opposite directions.
 #[derive(Clone, Debug)]
-pub struct Eyes {
+pub(crate) struct Eyes {
     /// The camera's matrices.
     pub matrices: Matrices,
     /// The camera.
@@ -133,7 +134,7 @@ fn no_view(table: &str, place: &str, error: &ViewError) -> SetupError {
     match error {
         ViewError::EyeInside(_) => SetupError::value(key, INSIDE),
         ViewError::EyeFar { .. } => SetupError::value(key, format!("is too far: {error}")),
-        ViewError::Limb(_) => SetupError::value(table, format!("has no view of the part: {error}")),
+        _ => SetupError::value(table, format!("has no view of the part: {error}")),
     }
 }
 
@@ -175,7 +176,7 @@ pub struct Sightings<'a> {
 
 /// A light with its views of the part.
 #[derive(Debug)]
-pub struct StageLight<'a> {
+pub(crate) struct StageLight<'a> {
     /// The light.
     pub source: light::LightSource,
     /// Its views.
@@ -186,20 +187,20 @@ pub struct StageLight<'a> {
 #[derive(Debug)]
 pub struct LitScene<'a> {
     /// The part.
-    pub subject: &'a PreparedPart<'a>,
+    pub(crate) subject: &'a PreparedPart<'a>,
     /// The camera's matrices.
-    pub matrices: Matrices,
+    pub(crate) matrices: Matrices,
     /// The camera's view.
     pub view: Sightings<'a>,
     /// The lights with their views.
-    pub lights: Vec<StageLight<'a>>,
+    pub(crate) lights: Vec<StageLight<'a>>,
     /// By contour: the index of a limb among those of its face.
     ordinals: Vec<u32>,
 }
 
 impl<'a> LitScene<'a> {
     /// The views of all eyes.
-    pub fn new(subject: &'a PreparedPart<'a>, eyes: &'a Eyes) -> Result<Self, StageError> {
+    pub(crate) fn new(subject: &'a PreparedPart<'a>, eyes: &'a Eyes) -> Result<Self, StageError> {
         let see = |eye: &'a Eye| -> Result<Sightings<'a>, ViewError> {
             Ok(Sightings {
                 contours: contours(subject.brep, &eye.camera, subject.resolution)?,
@@ -226,13 +227,13 @@ impl<'a> LitScene<'a> {
     }
 
     /// The visible pieces of the camera's contours, cut where others end on them.
-    pub fn arcs(&self, window: &ImageWindow) -> Vec<PredictedArc> {
+    pub(crate) fn arcs(&self, window: &ImageWindow) -> Vec<PredictedArc> {
         self.view.arcs(&self.ordinals, FINE, window)
     }
 
     /// Whether a light is so near to the camera that every visible point is lit, within the
     /// accuracy of polylines: shadows are hidden behind their casters.
-    pub fn is_next_to_camera(&self, light: usize) -> bool {
+    pub(crate) fn is_next_to_camera(&self, light: usize) -> bool {
         let LightPlace::Near(source) = self.lights[light].source.place() else {
             return false;
         };
@@ -244,7 +245,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// Whether a light reaches a point of a face that is turned towards it.
-    pub fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
+    pub(crate) fn is_lit(&self, light: usize, p: &Point3<f64>, face: FaceId) -> bool {
         let views = &self.lights[light].views;
         let before = |v: &&Sightings<'_>| views.len() == 1 || v.scene.projection.depth(p) > 0.0;
         let own = |other| {
@@ -261,7 +262,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// The face that is visible at a point of the image, and the point of it.
-    pub fn seen(&self, at: [f64; 2]) -> Option<FirstHit> {
+    pub(crate) fn seen(&self, at: [f64; 2]) -> Option<FirstHit> {
         self.view.scene.nearest(&Point2::from(at))
     }
 }
@@ -269,7 +270,12 @@ impl<'a> LitScene<'a> {
 impl Sightings<'_> {
     /// The visible pieces of the contours, cut where others end on them, as polylines within
     /// `fine`. `ordinals` gives the index of each limb among those of its face.
-    pub fn arcs(&self, ordinals: &[u32], fine: f64, window: &ImageWindow) -> Vec<PredictedArc> {
+    pub(crate) fn arcs(
+        &self,
+        ordinals: &[u32],
+        fine: f64,
+        window: &ImageWindow,
+    ) -> Vec<PredictedArc> {
         let contours = &self.contours;
         let projection = self.scene.projection;
         let tolerance = FlatteningTolerance { fine, window };
@@ -301,7 +307,7 @@ impl Sightings<'_> {
 }
 
 /// By contour: the index of a limb among those of its face.
-pub fn ordinals(contours: &Contours) -> Vec<u32> {
+pub(crate) fn ordinals(contours: &Contours) -> Vec<u32> {
     let mut count: HashMap<FaceId, u32> = HashMap::new();
     let ordinal = |contour: &Contour| match contour.edge {
         Some(_) => 0,
@@ -315,7 +321,7 @@ pub fn ordinals(contours: &Contours) -> Vec<u32> {
 }
 
 /// Whether the image of a contour is a straight line that is traversed in one direction.
-pub fn is_straight(contour: &Contour) -> bool {
+pub(crate) fn is_straight(contour: &Contour) -> bool {
     matches!(
         (&contour.image_curve, &contour.space_curve),
         (
@@ -405,7 +411,7 @@ impl PredictedArc {
     }
 
     /// Records that another arc ends at a point, given the nearest point of this one.
-    pub fn stop_at(&mut self, p: [f64; 2], nearest: NearestPoint) {
+    pub(crate) fn stop_at(&mut self, p: [f64; 2], nearest: NearestPoint) {
         let i = nearest.at.segment;
         if nearest.square > ON || self.ends_at(p) {
             return;

@@ -67,9 +67,9 @@ impl Region {
 #[derive(Debug)]
 pub struct Regions {
     /// The crossings of lines and arcs.
-    pub scanlines: Scanlines,
+    pub(crate) scanlines: Scanlines,
     /// The sections of the arcs.
-    pub sections: Sections,
+    pub(crate) sections: Sections,
     /// The regions. The first is the outside of all arcs. The last contains all gaps of scanlines
     /// whose region neither end determines.
     pub all: Vec<Region>,
@@ -108,7 +108,11 @@ impl Sets {
 
 impl Regions {
     /// The regions between the arcs of a stage's image.
-    pub fn new(stage: &LitScene<'_>, arcs: &[PredictedArc], [width, height]: [usize; 2]) -> Self {
+    pub(crate) fn new(
+        stage: &LitScene<'_>,
+        arcs: &[PredictedArc],
+        [width, height]: [usize; 2],
+    ) -> Self {
         let sections = Sections::new(arcs);
         let scanlines = Scanlines::new(arcs, &sections, height);
         let mut sets = Sets((0..=2 * sections.all.len() as u32).collect());
@@ -141,12 +145,12 @@ impl Regions {
 
     /// The number of arcs that divide the image; outlines of highlights, which come after them, do
     /// not.
-    pub fn arcs(&self) -> usize {
+    pub(crate) fn arcs(&self) -> usize {
         self.sections.arcs()
     }
 
     /// The region on a side of a section.
-    pub fn adjacent(&self, section: u32, on: ArcSide) -> u32 {
+    pub(crate) fn adjacent(&self, section: u32, on: ArcSide) -> u32 {
         self.sides[side(section, on)]
     }
 
@@ -160,7 +164,7 @@ impl Regions {
 
     /// The gaps of a scanline: the region between each two crossings, starting with the outside on
     /// the left.
-    pub fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
+    pub(crate) fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
         let on = self.scanlines.on(line);
         (0..=on.len()).map(move |k| {
             let (from, to) = (k.checked_sub(1).map(|k| &on[k]), on.get(k));

@@ -59,7 +59,7 @@ impl SourceLimits {
     }
 
     /// Those of setups.
-    pub fn of_setups(setups: &Setups) -> Self {
+    pub(crate) fn of_setups(setups: &Setups) -> Self {
         Self::NONE.with_setups(setups)
     }
 
@@ -74,7 +74,7 @@ impl SourceLimits {
     ///
     /// # Errors
     /// It is beyond the limits.
-    pub fn check(&self, key: &str, source: &ArcSource) -> Result<(), Inconsistency> {
+    pub(crate) fn check(&self, key: &str, source: &ArcSource) -> Result<(), Inconsistency> {
         let [face, caster] = [source.face(), source.caster()];
         let all = [
             source.edge().map(|id| ("edge", id.0, self.edges, "edges")),
@@ -141,7 +141,7 @@ pub fn check_observation(observation: &Observation, limits: &SourceLimits) -> Ch
 
 /// The checker of a model's records: it counts the records of each kind.
 #[derive(Clone, Debug)]
-pub struct Consistency {
+pub(crate) struct Consistency {
     head: ModelHead,
     features: usize,
     aspects: usize,

@@ -6,7 +6,7 @@
 
 pub mod consistency;
 pub mod file;
-pub mod information;
+pub(crate) mod information;
 pub mod observation;
 pub mod record;
 pub mod summary;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The number of attributes of a feature.
-pub const ATTRIBUTES: usize = 5;
+pub(crate) const ATTRIBUTES: usize = 5;
 
 /// A feature in one setup: all arcs with the same source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use super::observation::{ATTRIBUTES, RelationKind};
 use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
 use crate::image_arcs::ArcSource;
 use crate::setup::setups::Setups;
-use crate::statistics::{CredibleInterval, DependenceTree, Moments, Proportion, Smoothing};
+use crate::statistics::{CredibleInterval, DependenceTree, Moments, Proportion};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -91,7 +91,8 @@ pub struct ModelHead {
 }
 
 /// The placeholder for the digits of a digest that is not known yet.
-pub const NO_DIGEST: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+pub(crate) const NO_DIGEST: &str =
+    "0000000000000000000000000000000000000000000000000000000000000000";
 
 /// A share with its credible interval of 95 % (Beta(½, ½) posterior).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -366,7 +367,7 @@ fn tuples(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<RelationR
 }
 
 fn codetection(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Option<Codetection> {
-    let tree = DependenceTree::new(summary.pairs.as_ref()?, Smoothing::Jeffreys);
+    let tree = DependenceTree::new(summary.pairs.as_ref()?);
     let nodes = tree.order().iter().map(|&i| {
         let node = &tree.nodes()[i];
         let of = |k: usize| rank[&summary.paired[k]];

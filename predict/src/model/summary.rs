@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 
 /// The number of bins for fragments: none, one and so on, and more.
-pub const FRAGMENTS: usize = 8;
+pub(crate) const FRAGMENTS: usize = 8;
 /// The greatest number of separate aspects; the observations of further ones count only for the
 /// features.
 const MOST_ASPECTS: usize = 1024;
@@ -22,11 +22,11 @@ pub(super) const MAX_PAIRED: usize = 256;
 const LEARNT: u64 = 3;
 /// The least variances of the attributes: a hundredth of the part's radius, of its logarithm, and
 /// of the cosine and the sine.
-pub const FLOOR: [f64; ATTRIBUTES] = [0.0001, 0.0001, 0.0025, 0.0025, 0.0025];
+pub(crate) const FLOOR: [f64; ATTRIBUTES] = [0.0001, 0.0001, 0.0025, 0.0025, 0.0025];
 
 /// The counts of a feature in total and in every aspect.
 #[derive(Clone, Debug, Default)]
-pub struct SightSums {
+pub(crate) struct SightSums {
     /// The numbers of setups in which it is whole, broken and missed, of those in which it is
     /// visible.
     pub states: [u64; 3],
@@ -56,7 +56,7 @@ impl SightSums {
 
 /// The counts of a feature.
 #[derive(Clone, Debug, Default)]
-pub struct FeatureSums {
+pub(crate) struct FeatureSums {
     /// The counts that aspects have, too.
     pub sights: SightSums,
     /// The numbers of fragments that are found.
@@ -86,7 +86,7 @@ impl FeatureSums {
 
 /// The counts of an aspect: setups that see the same edges and limbs.
 #[derive(Clone, Debug, Default)]
-pub struct AspectSums {
+pub(crate) struct AspectSums {
     /// How many setups.
     pub setups: u64,
     /// The sum of the cameras' directions.
@@ -100,7 +100,7 @@ pub struct AspectSums {
 
 /// The counts of a relation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TupleSums {
+pub(crate) struct TupleSums {
     /// In how many setups it is visible.
     pub visible: u64,
     /// The number of setups in which all its members are found.
@@ -113,27 +113,27 @@ pub struct TupleSums {
 #[derive(Debug, Default)]
 pub struct Summary {
     /// How many setups.
-    pub setups: u64,
+    pub(crate) setups: u64,
     /// The numbers of setups in which nothing is visible, by reason.
-    pub unseen: BTreeMap<String, u64>,
+    pub(crate) unseen: BTreeMap<String, u64>,
     /// By feature.
-    pub features: BTreeMap<ArcSource, FeatureSums>,
+    pub(crate) features: BTreeMap<ArcSource, FeatureSums>,
     /// By the edges and limbs that are visible.
-    pub aspects: BTreeMap<Vec<ArcSource>, AspectSums>,
+    pub(crate) aspects: BTreeMap<Vec<ArcSource>, AspectSums>,
     /// The number of setups of aspects beyond the separate ones.
-    pub other_aspects: u64,
+    pub(crate) other_aspects: u64,
     /// By relation: its kind and its features.
-    pub tuples: BTreeMap<(RelationKind, Vec<ArcSource>), TupleSums>,
+    pub(crate) tuples: BTreeMap<(RelationKind, Vec<ArcSource>), TupleSums>,
     /// The number of times that relations beyond the separate ones are visible.
-    pub other_tuples: u64,
+    pub(crate) other_tuples: u64,
     /// The number of pairs of ends that are near by chance, and the number of all such pairs.
-    pub chance: [u64; 2],
+    pub(crate) chance: [u64; 2],
     /// The logarithms of the pose's standard deviations: rotation and translation.
-    pub pose: Moments<2>,
+    pub(crate) pose: Moments<2>,
     /// The features whose co-detection is counted.
-    pub paired: Vec<ArcSource>,
+    pub(crate) paired: Vec<ArcSource>,
     /// The joint counts of their states: not visible, missed and found.
-    pub pairs: Option<Pairs<3>>,
+    pub(crate) pairs: Option<Pairs<3>>,
 }
 
 /// Whether a setup is for training; the others are for testing.
@@ -202,7 +202,7 @@ impl Summary {
     }
 
     /// The features by falling number of setups in which they are found.
-    pub fn ranked(&self) -> Vec<ArcSource> {
+    pub(crate) fn ranked(&self) -> Vec<ArcSource> {
         let mut all: Vec<(u64, ArcSource)> = self
             .features
             .iter()

@@ -7,7 +7,8 @@ pub use levels::{
     ArcGeometry, ArcLevel, ArcPiece, BoundaryLevel, Chances, ImageLevel, ImageSegment, ObjectLevel,
     Prediction, RegionLevel, SCHEMA, prediction,
 };
-pub use predicted_image::{DetectionOutcome, ImageEvidence, Memory, PredictedImage, with_draft};
+pub(crate) use predicted_image::DetectionOutcome;
+pub use predicted_image::{ImageEvidence, Memory, PredictedImage, with_draft};
 
 /// The schema of [`Prediction`], as JSON Schema has it.
 pub fn schema() -> schemars::Schema {

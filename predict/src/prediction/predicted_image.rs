@@ -55,7 +55,7 @@ pub struct Memory {
 #[derive(Clone, Debug)]
 pub struct ImageEvidence {
     /// The detection.
-    pub detection: Detection,
+    pub(crate) detection: Detection,
     /// By arc: the edges found of it.
     pub arcs: Vec<DetectedArc>,
 }
@@ -75,6 +75,10 @@ pub struct DetectionOutcome {
 ///
 /// `finishes` are those of the setup's conditions, where they are already known, as for many
 /// setups.
+///
+/// # Errors
+/// The setup cannot be used, the camera or a light has no view of the part, or the image does not
+/// show it.
 pub fn with_draft<T>(
     subject: &PreparedPart<'_>,
     finishes: Option<&Finishes>,
@@ -161,7 +165,7 @@ impl<'s> PredictedImage<'s> {
     }
 
     /// The detections of each arc over noise draws.
-    pub fn outcome(&self) -> DetectionOutcome {
+    pub(crate) fn outcome(&self) -> DetectionOutcome {
         let sensor = &self.conditions.sensor;
         let noisy = sensor.electrons > 0.0 || sensor.read_noise > 0.0;
         let draws = if noisy {
@@ -220,7 +224,7 @@ impl<'s> PredictedImage<'s> {
     }
 
     /// The brightness on both sides along an arc.
-    pub fn contrast(&self, arc: usize) -> Vec<Contrast> {
+    pub(crate) fn contrast(&self, arc: usize) -> Vec<Contrast> {
         let [start, end] = self.ink.spans[arc];
         match start <= end {
             true => contrast(
@@ -235,7 +239,7 @@ impl<'s> PredictedImage<'s> {
     }
 
     /// Why an arc is not whole.
-    pub fn reason(
+    pub(crate) fn reason(
         &self,
         arc: usize,
         evidence: &[DetectedArc],
@@ -246,7 +250,7 @@ impl<'s> PredictedImage<'s> {
     }
 
     /// The quantities that determine reasons.
-    pub fn measure(&self) -> Measure {
+    pub(crate) fn measure(&self) -> Measure {
         let (sensor, detector) = (&self.conditions.sensor, &self.conditions.detector);
         Measure {
             top: f64::from(sensor.levels - 1),

@@ -90,7 +90,7 @@ pub struct Material(Constants);
 
 impl Material {
     /// The material of constants, if each is in its range.
-    pub fn new(constants: Constants) -> Result<Self, MaterialError> {
+    pub(crate) fn new(constants: Constants) -> Result<Self, MaterialError> {
         let c = &constants;
         let ranges = [
             ("ambient", c.ambient, 0.0, 1.0),
@@ -124,12 +124,12 @@ impl Material {
     }
 
     /// Its constants.
-    pub fn constants(&self) -> &Constants {
+    pub(crate) fn constants(&self) -> &Constants {
         &self.0
     }
 
     /// Its index of refraction and extinction coefficient.
-    pub fn optics(&self) -> Optics {
+    pub(crate) fn optics(&self) -> Optics {
         Optics {
             n: self.0.n,
             k: self.0.k,
@@ -137,7 +137,7 @@ impl Material {
     }
 
     /// R_d in 1/sr: what is given, or F(0)/π.
-    pub fn diffuse(&self) -> f64 {
+    pub(crate) fn diffuse(&self) -> f64 {
         self.0
             .diffuse
             .unwrap_or_else(|| self.optics().normal() * FRAC_1_PI)

@@ -19,16 +19,3 @@ pub fn distribution(m: f64, cos_alpha: f64) -> f64 {
         0.0
     }
 }
-
-/// The geometric attenuation G = min{1, 2(N·H)(N·V)/(V·H), 2(N·H)(N·L)/(V·H)}, from 0 to 1.
-///
-/// The share of a facet that its neighbours neither shade nor hide, for V-shaped grooves (Torrance
-/// and Sparrow, 1967; Cook and Torrance, 1982).
-#[inline]
-pub fn attenuation(n_h: f64, n_v: f64, n_l: f64, v_h: f64) -> f64 {
-    if n_h > 0.0 && n_v > 0.0 && n_l > 0.0 && v_h > 0.0 {
-        (2.0 * n_h * n_v.min(n_l) / v_h).min(1.0)
-    } else {
-        0.0
-    }
-}

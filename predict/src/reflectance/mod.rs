@@ -14,11 +14,11 @@ mod microfacet;
 mod optics;
 mod surface;
 
-pub use library::{GREEN, Named};
-pub use material::{Constants, Material, MaterialError, SpecularForm};
-pub use microfacet::{attenuation, distribution};
-pub use optics::{Optics, Polarisation, Reflectivity};
-pub use surface::{Reflectance, SurfaceFinish};
+pub(crate) use library::GREEN;
+pub use library::Named;
+pub use material::{Constants, Material, SpecularForm};
+pub(crate) use optics::{Optics, Polarisation};
+pub(crate) use surface::SurfaceFinish;
 
 #[cfg(test)]
 mod tests;

@@ -40,11 +40,6 @@ impl Polarisation {
             parallel: parallel / total,
         })
     }
-
-    /// The parallel component's share of the intensity: cos²ψ, with tan²ψ = I⊥/I∥.
-    pub fn parallel(self) -> f64 {
-        self.parallel
-    }
 }
 
 impl Default for Polarisation {

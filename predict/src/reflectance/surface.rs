@@ -51,12 +51,6 @@ impl SurfaceFinish {
         self.specular > 0.0
     }
 
-    /// The diffuse part `d R_d` of the bidirectional reflectance, in 1/sr: the same for all
-    /// directions.
-    pub fn diffuse(&self) -> f64 {
-        self.diffuse
-    }
-
     /// The bidirectional reflectance for the unit vectors of the surface's `normal`, to the `light`
     /// and to the `viewer`.
     ///

@@ -1,3 +1,6 @@
+use super::microfacet::distribution;
+use super::optics::Reflectivity;
+use super::surface::Reflectance;
 use super::*;
 use crate::statistics::Random;
 use nalgebra::{Complex, Vector3};
@@ -173,15 +176,15 @@ fn beckmanns_distribution_integrates_to_pi() {
     }
 }
 
-#[test]
-fn attenuation_is_a_share() {
-    let mut random = Random::new(2);
-    for _ in 0..10_000 {
-        let mut cos = || 2.0 * random.uniform() - 1.0;
-        let g = attenuation(cos(), cos(), cos(), cos());
-        assert!((0.0..=1.0).contains(&g));
+/// The geometric attenuation G = min{1, 2(N·H)(N·V)/(V·H), 2(N·H)(N·L)/(V·H)}: the share of a facet
+/// that its neighbours neither shade nor hide, for V-shaped grooves (Torrance and Sparrow, 1967; Cook
+/// and Torrance, 1982).
+fn attenuation(n_h: f64, n_v: f64, n_l: f64, v_h: f64) -> f64 {
+    if n_h > 0.0 && n_v > 0.0 && n_l > 0.0 && v_h > 0.0 {
+        (2.0 * n_h * n_v.min(n_l) / v_h).min(1.0)
+    } else {
+        0.0
     }
-    assert_eq!(attenuation(1.0, 1.0, 1.0, 1.0), 1.0);
 }
 
 #[test]

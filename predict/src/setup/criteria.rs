@@ -32,7 +32,7 @@ impl Default for Criteria {
 
 impl Criteria {
     /// Checks that the values are in their ranges.
-    pub fn validate(&self) -> Result<(), SetupError> {
+    pub(crate) fn validate(&self) -> Result<(), SetupError> {
         let shares = 0.0 < self.least && self.least <= self.whole && self.whole <= 1.0;
         if !shares {
             let reason = format!(

@@ -49,7 +49,7 @@ fn yes() -> bool {
 
 impl Light {
     /// An unpolarised light at a point.
-    pub fn at(position: Point3<f64>) -> Self {
+    pub(crate) fn at(position: Point3<f64>) -> Self {
         Self {
             position: Some(position.into()),
             direction: None,
@@ -67,12 +67,12 @@ impl Light {
     }
 
     /// Its wavelength in nanometres.
-    pub fn wavelength(&self) -> f64 {
+    pub(crate) fn wavelength(&self) -> f64 {
         self.wavelength.unwrap_or(GREEN)
     }
 
     /// Checks that its values are in their ranges; `index` is the number of the light.
-    pub fn validate(&self, index: usize) -> Result<(), SetupError> {
+    pub(crate) fn validate(&self, index: usize) -> Result<(), SetupError> {
         let key = |name: &str| format!("light[{index}].{name}");
         at_least_zero(&key("parallel"), self.parallel)?;
         at_least_zero(&key("perpendicular"), self.perpendicular)?;
@@ -111,7 +111,7 @@ pub struct LightSource {
 
 /// The position of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightPlace {
+pub(crate) enum LightPlace {
     /// At a point.
     Near(Point3<f64>),
     /// Infinitely far in this unit direction.
@@ -157,7 +157,7 @@ impl LightSource {
     }
 
     /// Where it is.
-    pub fn place(&self) -> LightPlace {
+    pub(crate) fn place(&self) -> LightPlace {
         self.place
     }
 
@@ -183,7 +183,7 @@ impl LightSource {
     }
 
     /// I_l dω_l at the centre of the part.
-    pub fn strength(&self) -> f64 {
+    pub(crate) fn strength(&self) -> f64 {
         self.intensity * self.solid_angle
     }
 }

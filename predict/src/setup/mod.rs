@@ -21,13 +21,14 @@ use sensor::Sensor;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-pub use setup_toml::SetupToml;
+use setup_toml::SetupToml;
 use std::fmt;
 use std::ops::Range;
 use viewpoint::Viewpoint;
 
 /// Why a setup cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupError {
     /// The text is not that of a setup.
     #[error(transparent)]
@@ -147,7 +148,7 @@ impl<'de> Deserialize<'de> for Finish {
 impl Finish {
     /// The constants under light of a wavelength in nanometres; explicit constants hold for every
     /// wavelength.
-    pub fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
+    pub(crate) fn material(&self, wavelength: f64) -> Result<Material, SetupError> {
         match self {
             Self::Named(name) => {
                 let known = Named::known(name).ok_or_else(|| SetupError::Material(name.clone()))?;
@@ -215,6 +216,9 @@ impl Default for Conditions {
 
 impl Conditions {
     /// Whether all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is out of its range, or a material is unknown.
     pub fn validate(&self) -> Result<(), SetupError> {
         self.sensor.validate()?;
         at_least_zero("ambient", self.ambient)?;
@@ -226,14 +230,14 @@ impl Conditions {
 
     /// The materials under light of a wavelength in nanometres: that of the part, and those of
     /// `surfaces`.
-    pub fn materials(&self, wavelength: f64) -> Result<Vec<Material>, SetupError> {
+    pub(crate) fn materials(&self, wavelength: f64) -> Result<Vec<Material>, SetupError> {
         let others = self.surfaces.iter().map(|surface| &surface.material);
         let all = std::iter::once(&self.material).chain(others);
         all.map(|finish| finish.material(wavelength)).collect()
     }
 
     /// Checks that the values of lights are in their ranges, and those of the materials under them.
-    pub fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
+    pub(crate) fn validate_lights(&self, lights: &[Light]) -> Result<(), SetupError> {
         for (i, light) in lights.iter().enumerate() {
             light.validate(i)?;
             self.materials(light.wavelength())?;
@@ -256,6 +260,9 @@ pub struct Setup {
 }
 
 /// The detector that a TOML text describes: the keys of a setup's `[detector]`.
+///
+/// # Errors
+/// The text is not that of a detector, or a value is out of its range.
 pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
     let detector: Detector = Document::from_toml(text)?.read()?;
     detector.validate()?;
@@ -264,11 +271,18 @@ pub fn detector_from_toml(text: &str) -> Result<Detector, SetupError> {
 
 impl Setup {
     /// The setup that a TOML text describes.
+    ///
+    /// # Errors
+    /// The text is not that of a setup, or the setup is invalid: see [`Setup::validate`].
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
         SetupToml::from_toml(text)?.setup()
     }
 
     /// Whether all values are in their ranges.
+    ///
+    /// # Errors
+    /// A value is out of its range, a material is unknown or its constants are not known for a
+    /// light, or there are too many lights or none.
     pub fn validate(&self) -> Result<(), SetupError> {
         self.conditions.validate()?;
         self.camera.validate(&self.conditions.sensor)?;
@@ -285,7 +299,7 @@ impl Setup {
 }
 
 /// The greatest number of lights: the set that reaches a region is stored as bits.
-pub const MAX_LIGHTS: usize = 64;
+pub(crate) const MAX_LIGHTS: usize = 64;
 
 /// Checks that a number is finite and not negative.
 pub(crate) fn at_least_zero(key: &str, x: f64) -> Result<(), SetupError> {

@@ -68,7 +68,7 @@ fn is_length(key: &str, x: f64) -> Result<(), SetupError> {
 
 impl Sensor {
     /// Checks that its values are in their ranges.
-    pub fn validate(&self) -> Result<(), SetupError> {
+    pub(crate) fn validate(&self) -> Result<(), SetupError> {
         above_zero("sensor.focal", self.focal)?;
         above_zero("sensor.diameter", self.diameter)?;
         for side in self.film {
@@ -102,16 +102,9 @@ impl Sensor {
         }
     }
 
-    /// C, the part of the light that the lens collects, for a ray at an angle of this cosine to the
-    /// optical axis: (π/4) (a/f)² cos⁴α (Haralick and Shapiro 1992).
-    pub fn collection(&self, cosine: f64) -> f64 {
-        let aperture = self.diameter / self.focal;
-        0.25 * PI * aperture * aperture * cosine.powi(4)
-    }
-
     /// Grey levels for each unit of radiance on the optical axis, where lights of this strength,
     /// I_l dω_l together, expose a white surface.
-    pub fn gain(&self, strength: f64) -> f64 {
+    pub(crate) fn gain(&self, strength: f64) -> f64 {
         // The radiance of a white diffuse surface is its irradiance over π.
         self.white * PI / strength
     }
@@ -120,19 +113,6 @@ impl Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_wide_ray_is_collected_less_by_the_fourth_power() {
-        let sensor = Sensor {
-            focal: 10.0,
-            diameter: 5.0,
-            ..Sensor::default()
-        };
-        let on_axis = sensor.collection(1.0);
-        assert!((on_axis - PI / 16.0).abs() < 1e-15);
-        let aside = sensor.collection(0.5f64.sqrt());
-        assert!((aside / on_axis - 0.25).abs() < 1e-15);
-    }
 
     #[test]
     fn a_resolution_of_zero_is_reported() {

@@ -55,11 +55,18 @@ impl TryFrom<SetupToml> for Setups {
 
 impl Setups {
     /// The setups that a TOML text describes.
+    ///
+    /// # Errors
+    /// The text is not that of setups, or they are invalid: see [`Setups::new`].
     pub fn from_toml(text: &str) -> Result<Self, SetupError> {
         SetupToml::from_toml(text)?.try_into()
     }
 
     /// The setups of spheres under conditions.
+    ///
+    /// # Errors
+    /// A value is out of its range, a material is unknown or its constants are not known for a
+    /// light, there are too many setups or lights, or there is no light.
     pub fn new(
         conditions: Conditions,
         viewing: SetupSphere,

@@ -34,7 +34,7 @@ pub struct Viewpoint {
 
 impl Viewpoint {
     /// A camera at `eye` that looks at `target`.
-    pub fn looking(eye: Point3<f64>, target: Point3<f64>, up: Vector3<f64>) -> Self {
+    pub(crate) fn looking(eye: Point3<f64>, target: Point3<f64>, up: Vector3<f64>) -> Self {
         Self {
             eye: Some(eye.into()),
             target: Some(target.into()),
@@ -44,7 +44,7 @@ impl Viewpoint {
     }
 
     /// Checks that it is one of the two kinds, and that its values are in their ranges.
-    pub fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
+    pub(crate) fn validate(&self, sensor: &Sensor) -> Result<(), SetupError> {
         // Any centre of a part is valid, except the eye itself.
         let [x, y, z] = self.eye.unwrap_or_default();
         self.matrices(sensor, &Point3::new(x + 1.0 + x.abs(), y, z))
@@ -52,6 +52,10 @@ impl Viewpoint {
     }
 
     /// The matrices of the camera for a part with this centre.
+    ///
+    /// # Errors
+    /// Keys do not go together or are missing, a value is out of its range, or the matrices are not
+    /// those of a camera.
     pub fn matrices(&self, sensor: &Sensor, centre: &Point3<f64>) -> Result<Matrices, SetupError> {
         let strangers = match self.eye {
             Some(_) => [
@@ -122,15 +126,18 @@ impl Viewpoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrices {
     /// K, the camera matrix.
-    pub k: Matrix3<f64>,
+    pub(crate) k: Matrix3<f64>,
     /// R, the rotation into the camera's frame: x right, y down, z into the scene.
-    pub r: Matrix3<f64>,
+    pub(crate) r: Matrix3<f64>,
     /// t, the part's origin in the camera's frame.
-    pub t: Vector3<f64>,
+    pub(crate) t: Vector3<f64>,
 }
 
 impl Matrices {
     /// The camera of the matrices.
+    ///
+    /// # Errors
+    /// The matrices are not those of a camera.
     pub fn camera(&self) -> Result<ViewCamera, SetupError> {
         let Self { k, r, t } = *self;
         ViewCamera::new(CameraModel::Matrices {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The greatest number of points: far more views than any model has.
-pub const MAX_POINTS: usize = 1 << 22;
+pub(crate) const MAX_POINTS: usize = 1 << 22;
 
 /// The lattice of points on the sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +43,7 @@ pub enum SphereSampling {
 
 /// Why there are no points.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SphereError {
     /// The requested number of points is zero.
     #[error("the number of points must be at least 1")]
@@ -71,6 +72,10 @@ pub enum SphereError {
 
 /// The points of a lattice that lie in any of the cones, or on the whole sphere if there is no
 /// cone: unit vectors, in an order that depends only on the request.
+///
+/// # Errors
+/// The number of points or an angle is out of its range, a cone has no direction, or the cones
+/// contain no point of the lattice.
 pub fn points(
     lattice: Lattice,
     sampling: SphereSampling,

@@ -51,11 +51,6 @@ impl Proportion {
         Ok(Self { successes, trials })
     }
 
-    /// The successes.
-    pub fn successes(&self) -> u64 {
-        self.successes
-    }
-
     /// The trials.
     pub fn trials(&self) -> u64 {
         self.trials
@@ -281,7 +276,7 @@ mod tests {
         sum.record(true);
         sum.record(false);
         sum.merge(&Proportion::new(2, 5).unwrap());
-        assert_eq!((sum.successes(), sum.trials()), (3, 7));
+        assert_eq!(sum.trials(), 7);
         let text = serde_json::to_string(&sum).unwrap();
         assert_eq!(text, r#"{"successes":3,"trials":7}"#);
         let large = Proportion::new(1 << 60, u64::MAX).unwrap();

@@ -3,24 +3,8 @@
 use super::Pairs;
 
 /// The pseudo-count added to each count, so that states that never occurred are not taken for
-/// impossible.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Smoothing {
-    /// One half: Jeffreys' prior of a distribution over states.
-    #[default]
-    Jeffreys,
-    /// One: Laplace's rule of succession.
-    Laplace,
-}
-
-impl Smoothing {
-    fn added(self) -> f64 {
-        match self {
-            Self::Jeffreys => 0.5,
-            Self::Laplace => 1.0,
-        }
-    }
-}
+/// impossible: one half, Jeffreys' prior of a distribution over states.
+const PSEUDO_COUNT: f64 = 0.5;
 
 /// A feature in the tree.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,10 +40,9 @@ fn rank(information: f64) -> u64 {
 }
 
 /// The probabilities of states from counts.
-fn smoothed<const K: usize>(counts: [u32; K], smoothing: Smoothing) -> [f64; K] {
-    let added = smoothing.added();
-    let all: f64 = counts.iter().map(|&c| f64::from(c) + added).sum();
-    counts.map(|c| (f64::from(c) + added) / all)
+fn smoothed<const K: usize>(counts: [u32; K]) -> [f64; K] {
+    let all: f64 = counts.iter().map(|&c| f64::from(c) + PSEUDO_COUNT).sum();
+    counts.map(|c| (f64::from(c) + PSEUDO_COUNT) / all)
 }
 
 /// The feature that has the most information about all others.
@@ -77,17 +60,15 @@ fn root<const K: usize>(pairs: &Pairs<K>) -> Option<usize> {
 
 impl<const K: usize> DependenceTree<K> {
     /// The tree of counts.
-    pub fn new(pairs: &Pairs<K>, smoothing: Smoothing) -> Self {
+    pub fn new(pairs: &Pairs<K>) -> Self {
         let (parents, order) = spanning(pairs);
         let node = |(feature, &parent): (usize, &Option<usize>)| {
-            let marginal = smoothed(pairs.counts(feature), smoothing);
+            let marginal = smoothed(pairs.counts(feature));
             DependenceNode {
                 parent,
                 information: parent.map_or(0.0, |p| pairs.information(p, feature)),
                 marginal,
-                table: parent.map_or([marginal; K], |p| {
-                    pairs.table(p, feature).map(|row| smoothed(row, smoothing))
-                }),
+                table: parent.map_or([marginal; K], |p| pairs.table(p, feature).map(smoothed)),
             }
         };
         Self {
@@ -104,28 +85,6 @@ impl<const K: usize> DependenceTree<K> {
     /// All features, each after its parent.
     pub fn order(&self) -> &[usize] {
         &self.order
-    }
-
-    /// The feature that depends on none; none where there is no feature.
-    pub fn root(&self) -> Option<usize> {
-        self.order.first().copied()
-    }
-
-    /// The logarithm of the probability of an observation of all features; none where it is not of
-    /// these features and states.
-    pub fn log_probability(&self, states: &[u8]) -> Option<f64> {
-        if states.len() != self.nodes.len() {
-            return None;
-        }
-        let mut sum = 0.0;
-        for (node, &state) in self.nodes.iter().zip(states) {
-            let row = match node.parent {
-                Some(parent) => node.table.get(usize::from(*states.get(parent)?))?,
-                None => &node.marginal,
-            };
-            sum += row.get(usize::from(state))?.ln();
-        }
-        Some(sum)
     }
 }
 
@@ -201,7 +160,7 @@ mod tests {
 
     fn recovers<const K: usize>() {
         let pairs = sampled::<K>(4000);
-        let tree = DependenceTree::new(&pairs, Smoothing::default());
+        let tree = DependenceTree::new(&pairs);
         let found = edges(tree.nodes().iter().map(|n| n.parent));
         assert_eq!(found, edges(PLANTED.into_iter()));
         let mut known = [false; 8];
@@ -225,21 +184,28 @@ mod tests {
         recovers::<3>();
     }
 
+    /// The probability of an observation of all features.
+    fn probability(tree: &DependenceTree<2>, states: &[usize]) -> f64 {
+        let of = |(node, &state): (&DependenceNode<2>, &usize)| match node.parent {
+            Some(parent) => node.table[states[parent]][state],
+            None => node.marginal[state],
+        };
+        tree.nodes().iter().zip(states).map(of).product()
+    }
+
     #[test]
     fn a_tree_is_a_distribution() {
-        let tree = DependenceTree::new(&sampled::<2>(100), Smoothing::Laplace);
-        let all: f64 = (0..256_u32)
-            .map(|bits| (0..8).map(|i| (bits >> i & 1) as u8).collect::<Vec<_>>())
-            .map(|states| tree.log_probability(&states).unwrap().exp())
+        let tree = DependenceTree::new(&sampled::<2>(100));
+        let all: f64 = (0..256_usize)
+            .map(|bits| (0..8).map(|i| bits >> i & 1).collect::<Vec<_>>())
+            .map(|states| probability(&tree, &states))
             .sum();
         assert!((all - 1.0).abs() < 1e-12);
-        assert_eq!(tree.log_probability(&[0; 7]), None);
-        assert_eq!(tree.log_probability(&[2; 8]), None);
     }
 
     #[test]
     fn ties_go_to_the_lower_index() {
-        let none = DependenceTree::new(&Pairs::<2>::new(3), Smoothing::Jeffreys);
+        let none = DependenceTree::new(&Pairs::<2>::new(3));
         let parents: Vec<_> = none.nodes().iter().map(|n| n.parent).collect();
         assert_eq!(parents, [None, Some(0), Some(0)]);
         assert_eq!(none.nodes()[1].table, [[0.5; 2]; 2]);
@@ -248,16 +214,14 @@ mod tests {
         for state in [0, 1, 1, 0, 0] {
             pairs.observe(&[state; 4]).unwrap();
         }
-        let tree = DependenceTree::new(&pairs, Smoothing::Jeffreys);
+        let tree = DependenceTree::new(&pairs);
         let parents: Vec<_> = tree.nodes().iter().map(|n| n.parent).collect();
         assert_eq!(parents, [None, Some(0), Some(0), Some(0)]);
-        assert_eq!(tree.root(), Some(0));
+        assert_eq!(tree.order()[0], 0);
         let row = tree.nodes()[1].table[0];
         assert_eq!(row, [3.5 / 4.0, 0.5 / 4.0]);
-        assert_eq!(
-            DependenceTree::new(&Pairs::<2>::new(0), Smoothing::Jeffreys).root(),
-            None
-        );
+        let empty = DependenceTree::new(&Pairs::<2>::new(0));
+        assert!(empty.order().is_empty());
     }
 
     #[test]
@@ -269,7 +233,7 @@ mod tests {
             let states: Vec<u8> = (0..5).map(|_| (random.bits() & 1) as u8).collect();
             pairs.observe(&states).unwrap();
         }
-        let tree = DependenceTree::new(&pairs, Smoothing::Jeffreys);
+        let tree = DependenceTree::new(&pairs);
         let found: f64 = tree.nodes().iter().map(|n| n.information).sum();
         let mut best = 0.0_f64;
         for code in 0..125 {

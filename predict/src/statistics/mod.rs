@@ -1,7 +1,7 @@
 //! The statistics of many predictions.
 //!
-//! Each sum can be merged with another of its kind. It is kept in whole numbers, so that the result
-//! is the same bit for bit, however the samples were split and in whatever order they came.
+//! Each sum is kept in whole numbers, so that the result is the same bit for bit, in whatever order
+//! the samples came.
 
 mod beta;
 mod chow_liu;
@@ -11,7 +11,7 @@ mod pairs;
 mod whole;
 
 pub use beta::{CredibleInterval, Proportion};
-pub use chow_liu::{DependenceNode, DependenceTree, Smoothing};
+pub use chow_liu::DependenceTree;
 pub use histogram::Histogram;
 pub use moments::Moments;
 pub use pairs::Pairs;

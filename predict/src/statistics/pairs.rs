@@ -34,12 +34,6 @@ fn pairs(features: usize) -> usize {
     features.saturating_mul(features.saturating_sub(1)) / 2
 }
 
-fn add(to: &mut [u32], from: &[u32]) {
-    for (count, more) in to.iter_mut().zip(from) {
-        *count = count.saturating_add(*more);
-    }
-}
-
 impl<const K: usize> Pairs<K> {
     /// Empty counts of a number of features.
     pub fn new(features: usize) -> Self {
@@ -54,11 +48,6 @@ impl<const K: usize> Pairs<K> {
     /// The number of features.
     pub fn features(&self) -> usize {
         self.features
-    }
-
-    /// The number of observations.
-    pub fn observations(&self) -> u32 {
-        self.observations
     }
 
     /// Counts an observation: the state of each feature. An observation with other features or
@@ -88,15 +77,6 @@ impl<const K: usize> Pairs<K> {
                 *count = count.saturating_add(1);
             }
         }
-        Ok(())
-    }
-
-    /// Adds the observations of another count of as many features.
-    pub fn merge(&mut self, other: &Self) -> Result<(), StatisticsError> {
-        self.alike(other.features)?;
-        self.observations = self.observations.saturating_add(other.observations);
-        add(&mut self.single, &other.single);
-        add(&mut self.double, &other.double);
         Ok(())
     }
 
@@ -242,18 +222,12 @@ mod tests {
     }
 
     #[test]
-    fn merging_is_exact_and_what_is_unlike_is_refused() {
-        let all = observations(101);
-        let whole = of(&all);
-        let mut sum = Pairs::new(5);
-        for piece in all.chunks(7).rev() {
-            sum.merge(&of(piece)).unwrap();
-        }
-        assert_eq!(sum, whole);
+    fn counts_are_written_and_what_is_unlike_is_refused() {
+        let whole = of(&observations(101));
+        let mut sum = whole.clone();
         let text = serde_json::to_string(&whole).unwrap();
         assert_eq!(serde_json::from_str::<Pairs<3>>(&text).unwrap(), whole);
         assert!(serde_json::from_str::<Pairs<2>>(&text).is_err());
-        assert!(sum.merge(&Pairs::new(4)).is_err());
         assert!(sum.observe(&[0; 4]).is_err());
         let error = sum.observe(&[0, 0, 3, 0, 0]).unwrap_err();
         assert!(matches!(

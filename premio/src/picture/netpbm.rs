@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 /// Why a picture cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NetpbmError {
     /// The samples or the header end too early.
     #[error("found a part of a picture: the file ends before it")]

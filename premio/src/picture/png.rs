@@ -10,6 +10,7 @@ use std::io::Cursor;
 
 /// Why a PNG cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PngError {
     /// The file ends before the last chunk does.
     #[error("found a part of a picture: the file ends before it")]

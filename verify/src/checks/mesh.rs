@@ -29,7 +29,7 @@ struct Known {
 
 impl Checker<'_> {
     /// Writes meshes, reads them back and checks them.
-    pub fn mesh(&self) -> Check {
+    pub(crate) fn mesh(&self) -> Check {
         let check = |finding, detail| Check {
             subject: CheckSubject::Mesh,
             finding,

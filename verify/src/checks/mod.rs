@@ -14,10 +14,10 @@ mod strokes;
 pub mod views;
 mod window;
 
-pub use outlines::{Lack, Missing, Outlines};
-pub use recount::{Recount, WrongPiece};
-pub use shadow::ShadowOutline;
-pub use sheets::{SheetFault, SheetReport};
+pub(crate) use outlines::Outlines;
+pub(crate) use recount::Recount;
+pub(crate) use shadow::ShadowOutline;
+pub(crate) use sheets::SheetReport;
 
 use premio_csg::evaluate::Evaluation;
 use premio_csg::ray_casting::{Clearance, Estimate, RayOracle};
@@ -30,7 +30,7 @@ use premio_visibility::{Contours, ViewCamera, contours};
 use std::fmt;
 
 /// The allowed deviation of a measured volume, in standard errors.
-pub const DEVIATIONS: f64 = 5.0;
+pub(crate) const DEVIATIONS: f64 = 5.0;
 
 /// The factor by which more rays are cast if the first ones disagree.
 const AGAIN: usize = 16;
@@ -106,7 +106,7 @@ impl ViewChecks {
         drawing: true,
     };
     /// The checks of contours only.
-    pub const CONTOURS: Self = Self {
+    pub(crate) const CONTOURS: Self = Self {
         contours: true,
         drawing: false,
     };

@@ -20,7 +20,7 @@ const REPORTED: usize = 3;
 
 impl Checker<'_> {
     /// Writes the STEP file, reads it back and checks it.
-    pub fn step(&self) -> Check {
+    pub(crate) fn step(&self) -> Check {
         let subject = CheckSubject::Step;
         let check = |finding, detail| Check {
             subject,

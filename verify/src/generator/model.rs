@@ -111,17 +111,6 @@ pub struct PartModel {
     pub notation: Notation,
 }
 
-/// An event in the traversal of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visit {
-    /// A node, before its children.
-    Enter(ModelNodeId),
-    /// The operation between two of its children.
-    Between(ModelNodeId),
-    /// An operation after its children.
-    Leave(ModelNodeId),
-}
-
 impl ModelOperation {
     /// The operations.
     pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
@@ -132,12 +121,12 @@ impl ModelAxis {
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
     /// A random one.
-    pub fn any(random: &mut RandomChoices) -> Self {
+    pub(crate) fn any(random: &mut RandomChoices) -> Self {
         random.choose(&Self::ALL)
     }
 
     /// Its index, from 0.
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         match self {
             Self::X => 0,
             Self::Y => 1,
@@ -146,21 +135,22 @@ impl ModelAxis {
     }
 
     /// A vector along it.
-    pub fn vector(self, length: f64) -> [f64; 3] {
+    pub(crate) fn vector(self, length: f64) -> [f64; 3] {
         std::array::from_fn(|i| if i == self.index() { length } else { 0.0 })
     }
 }
 
 impl PartModel {
     /// A model of one primitive.
-    pub fn new(primitive: ModelPrimitive, steps: Vec<ModelStep>) -> Self {
+    #[cfg(test)]
+    pub(crate) fn new(primitive: ModelPrimitive, steps: Vec<ModelStep>) -> Self {
         let mut model = Self::default();
         model.leaf(primitive, steps);
         model
     }
 
     /// An empty model.
-    pub fn with_notation(notation: Notation) -> Self {
+    pub(crate) fn with_notation(notation: Notation) -> Self {
         let nodes = Vec::new();
         Self { nodes, notation }
     }
@@ -185,7 +175,7 @@ impl PartModel {
     }
 
     /// An operation on whole models.
-    pub fn join(op: ModelOperation, models: &[&Self], steps: Vec<ModelStep>) -> Self {
+    pub(crate) fn join(op: ModelOperation, models: &[&Self], steps: Vec<ModelStep>) -> Self {
         let mut all = Self::with_notation(
             models
                 .first()
@@ -214,23 +204,23 @@ impl PartModel {
     }
 
     /// A node for modification; its children must not change.
-    pub fn node_mut(&mut self, id: ModelNodeId) -> Option<&mut ModelNode> {
+    pub(crate) fn node_mut(&mut self, id: ModelNodeId) -> Option<&mut ModelNode> {
         self.nodes.get_mut(id)
     }
 
     /// The root; `None` for an empty model.
-    pub fn root(&self) -> Option<ModelNodeId> {
+    pub(crate) fn root(&self) -> Option<ModelNodeId> {
         self.nodes.len().checked_sub(1)
     }
 
     /// The nodes that are primitives.
-    pub fn leaves(&self) -> impl Iterator<Item = ModelNodeId> {
+    pub(crate) fn leaves(&self) -> impl Iterator<Item = ModelNodeId> {
         let is_leaf = |id: &ModelNodeId| matches!(self.nodes[*id].kind, ModelNodeKind::Leaf(_));
         (0..self.nodes.len()).filter(is_leaf)
     }
 
     /// The subtrees below the root; empty for a primitive.
-    pub fn children(&self) -> Vec<Self> {
+    pub(crate) fn children(&self) -> Vec<Self> {
         match self.nodes.last().map(|root| &root.kind) {
             Some(ModelNodeKind::Operation(_, children)) => {
                 children.iter().map(|&child| self.subtree(child)).collect()
@@ -240,7 +230,7 @@ impl PartModel {
     }
 
     /// The subtree below a node.
-    pub fn subtree(&self, root: ModelNodeId) -> Self {
+    pub(crate) fn subtree(&self, root: ModelNodeId) -> Self {
         let mut wanted = vec![false; self.nodes.len()];
         wanted[root] = true;
         for id in (0..=root).rev() {
@@ -267,7 +257,7 @@ impl PartModel {
 
     /// The model without some of its primitives. Operations without children are removed, too, and
     /// those with one child are replaced by it.
-    pub fn without(&self, gone: impl Fn(ModelNodeId) -> bool) -> Self {
+    pub(crate) fn without(&self, gone: impl Fn(ModelNodeId) -> bool) -> Self {
         let mut fewer = Self::with_notation(self.notation);
         let mut new_id: Vec<Option<ModelNodeId>> = vec![None; self.nodes.len()];
         for (id, node) in self.nodes.iter().enumerate() {
@@ -291,25 +281,6 @@ impl PartModel {
         }
         fewer
     }
-
-    /// Traverses the model from the root, in the order in which a description is written.
-    pub fn walk(&self, mut visit: impl FnMut(Visit)) {
-        let mut ahead: Vec<Visit> = self.root().map(Visit::Enter).into_iter().collect();
-        while let Some(next) = ahead.pop() {
-            visit(next);
-            if let Visit::Enter(id) = next
-                && let ModelNodeKind::Operation(_, children) = &self.nodes[id].kind
-            {
-                ahead.push(Visit::Leave(id));
-                for (k, &child) in children.iter().enumerate().rev() {
-                    ahead.push(Visit::Enter(child));
-                    if k > 0 {
-                        ahead.push(Visit::Between(id));
-                    }
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -320,26 +291,6 @@ mod tests {
         let ball = |r| PartModel::new(ModelPrimitive::Sphere(r), Vec::new());
         let two = PartModel::join(ModelOperation::Union, &[&ball(1.0), &ball(2.0)], Vec::new());
         PartModel::join(ModelOperation::Difference, &[&two, &ball(3.0)], Vec::new())
-    }
-
-    #[test]
-    fn a_walk_meets_everything_in_order() {
-        let mut visited = Vec::new();
-        three().walk(|visit| visited.push(visit));
-        use Visit::{Between, Enter, Leave};
-        let order = [
-            Enter(4),
-            Enter(2),
-            Enter(0),
-            Between(2),
-            Enter(1),
-            Leave(2),
-            Between(4),
-            Enter(3),
-            Leave(4),
-        ];
-        assert_eq!(visited, order);
-        PartModel::default().walk(|visit| panic!("{visit:?}"));
     }
 
     #[test]

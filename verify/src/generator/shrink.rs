@@ -27,7 +27,7 @@ pub fn shrink(
 /// The trees that are simpler than this one, large reductions first: without half of its
 /// primitives, a quarter, and so on down to one; with one transform step less; with rounder
 /// numbers.
-pub fn simpler(model: &PartModel) -> impl Iterator<Item = PartModel> {
+pub(crate) fn simpler(model: &PartModel) -> impl Iterator<Item = PartModel> {
     let leaves: Vec<ModelNodeId> = model.leaves().collect();
     let halves = iter::successors(Some(leaves.len() / 2), |n| (*n > 1).then_some(n / 2));
     let fewer = halves.filter(|n| *n > 0).flat_map({

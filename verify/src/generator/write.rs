@@ -25,6 +25,9 @@ pub fn write(model: &PartModel, format: Format) -> String {
 }
 
 /// Reads a text that [`write()`] made.
+///
+/// # Errors
+/// The text does not describe a solid in this format, or it is beyond a stated limit.
 pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
     reader::read("model", text.as_bytes(), format, &ReadOptions::default())
 }

@@ -13,6 +13,7 @@ use std::ops::Range;
 
 /// Why a camera cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CameraError {
     /// The text is not the JSON of a camera.
     #[error("camera: {0}")]
@@ -252,6 +253,9 @@ impl Raw {
 
 impl ViewCamera {
     /// A perspective camera that looks from `eye` at `target`.
+    ///
+    /// # Errors
+    /// A value is out of its range, the eye is the target, or `up` is zero.
     pub fn perspective(
         eye: Point3<f64>,
         target: Point3<f64>,
@@ -267,6 +271,9 @@ impl ViewCamera {
     }
 
     /// An orthographic camera that looks from `eye` towards `target`.
+    ///
+    /// # Errors
+    /// A value is out of its range, the eye is the target, or `up` is zero.
     pub fn orthographic(
         eye: Point3<f64>,
         target: Point3<f64>,
@@ -276,6 +283,10 @@ impl ViewCamera {
     }
 
     /// A camera of a model, with the default near plane.
+    ///
+    /// # Errors
+    /// A value is out of its range, the eye is the target, `up` is zero, or matrices are not those
+    /// of a camera.
     pub fn new(model: CameraModel) -> Result<Self, CameraError> {
         let camera = Self { model, near: None };
         camera.validate()?;
@@ -283,6 +294,9 @@ impl ViewCamera {
     }
 
     /// The camera that a JSON text describes.
+    ///
+    /// # Errors
+    /// The text is not the JSON of a camera, or the camera is invalid: see [`ViewCamera::new`].
     pub fn from_json(text: &str) -> Result<Self, CameraError> {
         // Read in two steps, so that what is wrong with the camera keeps its type.
         Self::try_from(Document::from_json(text)?.read::<Raw>()?)

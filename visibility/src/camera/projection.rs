@@ -143,7 +143,7 @@ impl Projection {
     }
 
     /// The homogeneous image of a point.
-    pub fn homogeneous(&self, p: &Point3<f64>) -> Vector3<f64> {
+    pub(crate) fn homogeneous(&self, p: &Point3<f64>) -> Vector3<f64> {
         let d = p - self.origin;
         Vector3::new(
             self.axes[0].dot(&d),
@@ -156,7 +156,7 @@ impl Projection {
     }
 
     /// The homogeneous image of a displacement.
-    pub fn homogeneous_vector(&self, d: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn homogeneous_vector(&self, d: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(
             self.axes[0].dot(d),
             self.axes[1].dot(d),
@@ -168,7 +168,7 @@ impl Projection {
     }
 
     /// The homogeneous image of a point over any scalar.
-    pub fn homogeneous_over<S: Analytic<Float = f64>>(&self, p: [S; 3]) -> [S; 3] {
+    pub(crate) fn homogeneous_over<S: Analytic<Float = f64>>(&self, p: [S; 3]) -> [S; 3] {
         let d: [S; 3] = std::array::from_fn(|i| p[i] - S::constant(self.origin[i]));
         [
             dot(&self.axes[0], d),
@@ -224,7 +224,7 @@ impl Projection {
     }
 
     /// The image point with the homogeneous coordinates `h`.
-    pub fn image(&self, h: &Vector3<f64>) -> Point2<f64> {
+    pub(crate) fn image(&self, h: &Vector3<f64>) -> Point2<f64> {
         let g = self.affine * (h / h.z);
         Point2::new(g.x, g.y)
     }
@@ -292,7 +292,7 @@ impl Projection {
 
     /// The six coefficients (a, b, c, d, e, f) of a x² + b x y + c y² + d x + e y + f = 0 in image
     /// coordinates, of largest magnitude one, for the conic hᵀ C h = 0.
-    pub fn conic(&self, c: &Matrix3<f64>) -> [f64; 6] {
+    pub(crate) fn conic(&self, c: &Matrix3<f64>) -> [f64; 6] {
         let m = self.inverse.transpose() * c * self.inverse;
         let six = [
             m[(0, 0)],
@@ -308,7 +308,7 @@ impl Projection {
 
     /// The coefficients (a, b, c) of a x + b y + c = 0 in image coordinates, a² + b² = 1, for the
     /// line l·h = 0.
-    pub fn line(&self, l: &Vector3<f64>) -> [f64; 3] {
+    pub(crate) fn line(&self, l: &Vector3<f64>) -> [f64; 3] {
         let m = self.inverse.tr_mul(l);
         (m / m.x.hypot(m.y)).into()
     }

@@ -49,7 +49,7 @@ pub struct Junction {
 
 /// The entity of the boundary that a junction lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JunctionSupport {
+pub(crate) enum JunctionSupport {
     /// A vertex.
     Vertex(VertexId),
     /// The inside of an edge.
@@ -73,7 +73,7 @@ struct Known {
 pub struct Junctions<'p> {
     projection: &'p Projection,
     /// By their ids.
-    pub list: Vec<Junction>,
+    pub(crate) list: Vec<Junction>,
     /// By junction: the data that the view does not report.
     known: Vec<Known>,
     vertices: Vec<Option<u32>>,
@@ -91,7 +91,12 @@ impl<'p> Junctions<'p> {
     }
 
     /// A new junction.
-    pub fn add(&mut self, kind: JunctionKind, site: JunctionSupport, p: &Point3<f64>) -> u32 {
+    pub(crate) fn add(
+        &mut self,
+        kind: JunctionKind,
+        site: JunctionSupport,
+        p: &Point3<f64>,
+    ) -> u32 {
         let id = self.list.len() as u32;
         self.list.push(Junction {
             id,
@@ -109,42 +114,37 @@ impl<'p> Junctions<'p> {
     }
 
     /// The entity that a junction lies on.
-    pub fn site(&self, id: u32) -> JunctionSupport {
+    pub(crate) fn site(&self, id: u32) -> JunctionSupport {
         self.known[id as usize].site
     }
 
     /// Its image at depth one.
-    pub fn image(&self, id: u32) -> [f64; 2] {
+    pub(crate) fn image(&self, id: u32) -> [f64; 2] {
         self.known[id as usize].image
     }
 
     /// Its kind.
-    pub fn kind(&self, id: u32) -> JunctionKind {
+    pub(crate) fn kind(&self, id: u32) -> JunctionKind {
         self.list[id as usize].kind
     }
 
     /// Marks a junction that another contour passes in the image.
-    pub fn mark_ambiguous(&mut self, id: u32) {
+    pub(crate) fn mark_ambiguous(&mut self, id: u32) {
         self.known[id as usize].crowded = true;
     }
 
     /// Whether another contour passes it in the image.
-    pub fn is_ambiguous(&self, id: u32) -> bool {
+    pub(crate) fn is_ambiguous(&self, id: u32) -> bool {
         self.known[id as usize].crowded
     }
 
     /// The junction at a vertex.
-    pub fn vertex(&mut self, vertex: VertexId, p: &Point3<f64>) -> u32 {
+    pub(crate) fn vertex(&mut self, vertex: VertexId, p: &Point3<f64>) -> u32 {
         if let Some(id) = self.vertices[vertex.index()] {
             return id;
         }
         let id = self.add(JunctionKind::Vertex, JunctionSupport::Vertex(vertex), p);
         self.vertices[vertex.index()] = Some(id);
         id
-    }
-
-    /// The position of a junction in space.
-    pub fn point(&self, id: u32) -> Point3<f64> {
-        Point3::from(self.list[id as usize].space_point)
     }
 }

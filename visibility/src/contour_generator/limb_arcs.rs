@@ -24,13 +24,13 @@ pub struct LimbArc {
     /// The range of its parameter.
     pub range: [f64; 2],
     /// Whether the range is a whole period.
-    pub closed: bool,
+    pub(crate) closed: bool,
     /// The face.
     pub face: FaceId,
     /// The junctions at both ends.
-    pub ends: [Option<u32>; 2],
+    pub(crate) ends: [Option<u32>; 2],
     /// Cusps and nodes.
-    pub marks: Vec<ArcJunction>,
+    pub(crate) marks: Vec<ArcJunction>,
 }
 
 /// All limbs of a part, and where they end on its edges.
@@ -39,10 +39,13 @@ pub struct LimbArcs {
     /// The limbs.
     pub arcs: Vec<LimbArc>,
     /// By edge: the ends of limbs on it.
-    pub on_edges: Vec<Vec<ArcJunction>>,
+    pub(crate) on_edges: Vec<Vec<ArcJunction>>,
 }
 
 /// Trims the limbs of every surface by the faces on it.
+///
+/// # Errors
+/// A limb of a torus could not be resolved.
 pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<LimbArcs, Unresolved> {
     let brep = scene.brep;
     let mut known: Vec<Option<Vec<Limb>>> = vec![None; brep.geometry.surfaces.len()];

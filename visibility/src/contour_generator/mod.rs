@@ -2,8 +2,8 @@
 //! their cusps, and the arcs of both beyond the camera's near plane, with the junctions at their
 //! ends.
 
-pub mod contour_arc;
+pub(crate) mod contour_arc;
 pub(crate) mod facing;
 pub mod junctions;
-pub mod limb;
+mod limb;
 pub mod limb_arcs;

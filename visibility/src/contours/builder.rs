@@ -31,6 +31,7 @@ use std::time::Instant;
 
 /// Why there are no contours.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewError {
     /// The eye lies in the material.
     #[error("the eye ({}, {}, {}) lies inside the material", .0.x, .0.y, .0.z)]
@@ -51,11 +52,17 @@ pub enum ViewError {
 }
 
 /// The contours of a part seen by a camera; `resolution` is the part's resolution.
+///
+/// # Errors
+/// The eye is in the material or too far away, or a limb of a torus could not be resolved.
 pub fn contours(brep: &Brep, camera: &ViewCamera, resolution: f64) -> Result<Contours, ViewError> {
     contours_with(brep, camera, resolution, Method::Propagated)
 }
 
 /// The contours, with the method for quantitative invisibility.
+///
+/// # Errors
+/// As [`contours`].
 pub fn contours_with(
     brep: &Brep,
     camera: &ViewCamera,

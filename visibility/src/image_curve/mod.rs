@@ -5,10 +5,10 @@
 //! a conic. The conic is hᵀ C h = 0 with C = M⁻ᵀ B M⁻¹, B the conic of b; it is also the cone of
 //! sight, the lines from the eye through the curve. A line's cone of sight is the plane l·h = 0.
 
-pub mod edgewise;
-pub mod image_box;
-pub mod monotone_arc;
-pub mod polynomial;
+pub(crate) mod edgewise;
+pub(crate) mod image_box;
+pub(crate) mod monotone_arc;
+pub(crate) mod polynomial;
 
 use crate::camera::projection::Projection;
 use crate::image_curve::edgewise::Edgewise;
@@ -16,13 +16,12 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::{Conic, Curve};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::number::analytic::Analytic;
-use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::f64::consts::TAU;
 
 /// The functions that a conic's parameter enters through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Basis {
+pub(crate) enum Basis {
     /// cos t, sin t, 1.
     Circular,
     /// x(t), t, 1 of a conic about a point of it: (2 κ m², 2 m, 1 + 2 β m + κ α m²), up to a
@@ -42,18 +41,6 @@ impl Basis {
             }
             Self::Graph(c) => Vector3::new(c.height(t), t, 1.0),
             Self::Hyperbolic => Vector3::new(t.cosh(), t.sinh(), 1.0),
-        }
-    }
-
-    /// The derivatives at t.
-    pub fn derivative(self, t: f64) -> Vector3<f64> {
-        match self {
-            Self::Circular => {
-                let (s, c) = t.sin_cos();
-                Vector3::new(-s, c, 0.0)
-            }
-            Self::Graph(c) => Vector3::new(c.height(Jet::variable(t)).d, 1.0, 0.0),
-            Self::Hyperbolic => Vector3::new(t.sinh(), t.cosh(), 0.0),
         }
     }
 
@@ -86,7 +73,7 @@ impl Basis {
 
 /// The image of a curve.
 #[derive(Clone, Debug)]
-pub enum Image {
+pub(crate) enum Image {
     /// The curve is a line of sight.
     Point,
     /// A line: h = origin + t direction, and the line's coefficients, with l·h a distance in the
@@ -134,7 +121,12 @@ fn unit_line(l: Vector3<f64>) -> Vector3<f64> {
 const SHARP: f64 = 8.0;
 
 /// The image of a curve over `range`; `resolution` is the resolution of the part.
-pub fn image(curve: &Curve, range: [f64; 2], projection: &Projection, resolution: f64) -> Image {
+pub(crate) fn image(
+    curve: &Curve,
+    range: [f64; 2],
+    projection: &Projection,
+    resolution: f64,
+) -> Image {
     let conic = |frame: &Frame, a: f64, b: f64, basis: Basis| {
         conic_image(frame, a, b, basis, projection, resolution)
     };
@@ -334,7 +326,12 @@ impl Image {
 }
 
 /// Where k·b(t) = 0 over the range.
-pub fn line_on_conic(basis: Basis, k: &Vector3<f64>, range: [f64; 2], found: &mut impl FnMut(f64)) {
+pub(crate) fn line_on_conic(
+    basis: Basis,
+    k: &Vector3<f64>,
+    range: [f64; 2],
+    found: &mut impl FnMut(f64),
+) {
     let lo = range[0];
     match basis {
         Basis::Circular => {
@@ -386,13 +383,13 @@ fn quadratic(k: [f64; 3], found: &mut impl FnMut(f64)) {
 }
 
 /// The image of a point of a curve as a function over any scalar: (x, y) at depth one.
-pub fn flat_point<S: Analytic<Float = f64>>(projection: &Projection, p: [S; 3]) -> [S; 2] {
+pub(crate) fn flat_point<S: Analytic<Float = f64>>(projection: &Projection, p: [S; 3]) -> [S; 2] {
     let [x, y, z] = projection.homogeneous_over(p);
     [x.over(z), y.over(z)]
 }
 
 /// The normalised image point of a point in space.
-pub fn flat_of(projection: &Projection, p: &Point3<f64>) -> [f64; 2] {
+pub(crate) fn flat_of(projection: &Projection, p: &Point3<f64>) -> [f64; 2] {
     let h = projection.homogeneous(p);
     [h.x / h.z, h.y / h.z]
 }

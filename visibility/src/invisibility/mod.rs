@@ -57,7 +57,7 @@ pub enum Method {
 const PLACES: [f64; 5] = [0.47, 0.31, 0.73, 0.07, 0.93];
 
 /// The count for a piece of an arc over [lo, hi].
-pub fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
+pub(crate) fn count(scene: &Scene<'_>, arc: &ContourArc<'_>, [lo, hi]: [f64; 2]) -> Occluders {
     let at = |part: f64| count_at(scene, arc, lo + (hi - lo) * part);
     let mut ambiguous = Vec::with_capacity(PLACES.len());
     for place in PLACES {
@@ -116,7 +116,7 @@ fn inward(
 
 /// The pieces of all arcs, in order: one count at one piece of each connected part of the contours,
 /// propagated from there where the change of the occluders is unambiguous.
-pub fn pieces(
+pub(crate) fn pieces(
     scene: &Scene<'_>,
     contour_arcs: &mut [ContourArc<'_>],
     junctions: &mut Junctions<'_>,

@@ -8,9 +8,9 @@
 //! line of sight.
 
 mod arc_position;
-pub mod broad_phase;
-pub mod intersect;
-pub mod intersect_general;
+mod broad_phase;
+mod intersect;
+mod intersect_general;
 pub(crate) mod overlap;
 pub(crate) mod snap;
 

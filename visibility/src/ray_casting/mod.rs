@@ -45,7 +45,7 @@ pub enum OriginIncidence {
 
 /// A face on a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SightHit {
+pub(crate) struct SightHit {
     /// The distance from the origin of the line towards the eye.
     pub at: f64,
     /// The face.
@@ -60,7 +60,7 @@ pub struct SightHit {
 
 /// Which of the faces on a line of sight are requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FaceQuery {
+pub(crate) enum FaceQuery {
     /// All of them.
     All,
     /// Faces turned towards the eye, and faces turned away only where the line intersects their
@@ -83,18 +83,18 @@ pub struct Occluders {
 
 impl Occluders {
     /// The face nearest to the eye.
-    pub fn occluder(&self) -> Option<FaceId> {
+    pub(crate) fn occluder(&self) -> Option<FaceId> {
         self.order.first().copied()
     }
 
     /// Whether the order of all faces is known.
-    pub fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.order.len() as u32 == self.quantitative_invisibility
     }
 
     /// The occluders with these faces added between all others and the point, the nearest to the
     /// eye first.
-    pub fn before(&self, faces: &[FaceId]) -> Self {
+    pub(crate) fn before(&self, faces: &[FaceId]) -> Self {
         let mut count = self.clone();
         if count.is_whole() {
             count.order.extend(faces);
@@ -105,7 +105,7 @@ impl Occluders {
 
     /// The occluders without these faces, which lie between all others and the point; none if they
     /// do not.
-    pub fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
+    pub(crate) fn beyond(&self, faces: &[FaceId]) -> Option<Self> {
         let mut count = self.clone();
         count.quantitative_invisibility = count
             .quantitative_invisibility
@@ -151,7 +151,7 @@ fn sides(towards: &Vector3<f64>, along: &Vector3<f64>) -> Vec<Vector3<f64>> {
 
 impl Scene<'_> {
     /// The line of sight from a point.
-    pub fn ray(&self, p: &Point3<f64>) -> SightLine {
+    pub(crate) fn ray(&self, p: &Point3<f64>) -> SightLine {
         let EyeDirection {
             direction: towards,
             distance: away,
@@ -185,7 +185,7 @@ impl Scene<'_> {
 
     /// Reports the faces on a line of sight. `own` gives the incidence of faces through its origin.
     /// Faces seen edge-on are skipped.
-    pub fn hits(
+    pub(crate) fn hits(
         &self,
         ray: &SightLine,
         query: FaceQuery,
@@ -263,7 +263,7 @@ impl Scene<'_> {
 
     /// Reports where the line of sight from `p` intersects the whole surface of a face, in front of
     /// `p`.
-    pub fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
+    pub(crate) fn depths(&self, p: &Point3<f64>, face: FaceId, report: &mut impl FnMut(f64)) {
         let ray = self.ray(p);
         let hits = self.line_hits(&ray, self.brep.surface(face), OriginIncidence::No);
         for hit in hits.as_slice() {
@@ -293,7 +293,7 @@ impl Scene<'_> {
     /// sides: that of the most hidden direction around it. `inward` are directions into the
     /// material next to the edge, where it lies behind the face in which it ends towards the eye,
     /// however sharp it is.
-    pub fn count_end_on(
+    pub(crate) fn count_end_on(
         &self,
         p: &Point3<f64>,
         inward: &[Vector3<f64>],

@@ -19,16 +19,16 @@ use rstar::primitives::{GeomWithData, Rectangle};
 #[derive(Debug)]
 pub struct Scene<'a> {
     /// The part.
-    pub brep: &'a Brep,
+    pub(crate) brep: &'a Brep,
     /// The camera.
     pub projection: &'a Projection,
     /// The location of points in faces.
-    pub locator: Locator<'a>,
+    pub(crate) locator: Locator<'a>,
     /// The resolution.
-    pub resolution: f64,
+    pub(crate) resolution: f64,
     /// The sine of the angle between parallel sight and a direction along which the image of the
     /// whole part is no longer than the resolution.
-    pub tilt: f64,
+    pub(crate) tilt: f64,
     pub(crate) tree: RTree<FaceBox>,
     bounds: Aabb,
 }
@@ -65,12 +65,12 @@ impl<'a> Scene<'a> {
     }
 
     /// The box of the whole part.
-    pub fn bounds(&self) -> Aabb {
+    pub(crate) fn bounds(&self) -> Aabb {
         self.bounds
     }
 
     /// Whether the plane through `origin` with the unit `normal` is seen edge-on.
-    pub fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
+    pub(crate) fn edge_on(&self, origin: &Point3<f64>, normal: &Vector3<f64>) -> bool {
         match self.projection.sight {
             ViewRay::Eye(e) => (e - origin).dot(normal).is_within(self.resolution),
             ViewRay::Direction(d) => d.dot(normal).is_within(self.tilt),
@@ -78,7 +78,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Whether a face's outward normal is its surface's.
-    pub fn along(&self, face: FaceId) -> bool {
+    pub(crate) fn along(&self, face: FaceId) -> bool {
         self.brep.sense(face) == Sense::Along
     }
 }

@@ -38,7 +38,7 @@ fn within<N: Float>(row: &[N; 5], order: usize, half: N) -> [N; 5] {
 
 impl<N: Float> BivariateTrigPoly<N> {
     /// Bounds of the rows' derivatives by the second angle.
-    pub fn reaches(&self) -> Reaches<N> {
+    pub(crate) fn reaches(&self) -> Reaches<N> {
         let reach = |row: &[N; 5], order: usize| -> N {
             let power = |d: N| (0..order).fold(N::ONE, |p, _| p * d);
             let terms = row.iter().zip(degree::<N>());
@@ -50,7 +50,7 @@ impl<N: Float> BivariateTrigPoly<N> {
 
     /// The value with its partial derivatives at the centre of a cell, and bounds of the third
     /// derivatives over the cell. `half` are half its sides.
-    pub fn partials_about(
+    pub(crate) fn partials_about(
         &self,
         centre: [N; 2],
         half: [N; 2],

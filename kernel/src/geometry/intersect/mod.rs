@@ -59,6 +59,7 @@ pub struct SurfaceIntersection<N: Float = f64> {
 
 /// Why an intersection is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IntersectionError {
     /// The curve has a singular point of an unknown kind.
     #[error("two surfaces intersect in a curve with a singular point of an unknown kind, {0}")]
@@ -112,6 +113,9 @@ impl<N: Float> SurfaceIntersection<N> {
 }
 
 /// The intersection curves of two distinct surfaces within the extent.
+///
+/// # Errors
+/// The intersection has a cusp or a singular point of an unknown kind.
 pub fn intersect<N: Float>(
     a: Carrier<'_, N>,
     b: Carrier<'_, N>,

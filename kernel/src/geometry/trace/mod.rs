@@ -126,6 +126,10 @@ impl<N: Float> Tracer<'_, N> {
 }
 
 /// All branches of `form` = 0 on the torus. `form` is a distance to first order.
+///
+/// # Errors
+/// The curve has a singular point of an unknown kind, or branches that are too close to be
+/// separated.
 pub fn trace<N: Float>(
     torus: &Torus<N>,
     form: &BivariateTrigPoly<N>,

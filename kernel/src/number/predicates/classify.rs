@@ -125,7 +125,7 @@ impl Predicates {
 
     /// Classifies as [`Self::classify`] does, for a point that two things may share. A close call
     /// concerns that point only.
-    pub fn classify_at_point(
+    pub(crate) fn classify_at_point(
         &self,
         question: &'static str,
         distance: impl CertifiedDistance,
@@ -187,7 +187,7 @@ impl Predicates {
     }
 
     /// Records a pair within the resolution that is proven not to coincide.
-    pub fn record_unproven(&self, question: &'static str, place: [f64; 3], distance: f64) {
+    pub(crate) fn record_unproven(&self, question: &'static str, place: [f64; 3], distance: f64) {
         self.doubts.borrow_mut().push(CloseCall {
             question,
             place,

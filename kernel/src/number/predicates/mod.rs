@@ -59,15 +59,6 @@ impl Side {
             Self::On
         }
     }
-
-    /// The side with the surface's orientation reversed.
-    pub fn flipped(self) -> Self {
-        match self {
-            Self::Inside => Self::Outside,
-            Self::On => Self::On,
-            Self::Outside => Self::Inside,
-        }
-    }
 }
 
 /// What counts as zero.

@@ -15,6 +15,7 @@ use scan::{Component, SamplingFactors, Scan};
 
 /// Why a JPEG cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum JpegError {
     /// The file ends before its end marker.
     #[error("found a part of a picture: the file ends before it")]

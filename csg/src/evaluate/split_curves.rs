@@ -84,62 +84,26 @@ impl<N: Float> Arrangement<N> {
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Option<Vec<Cut<N>>> {
-        let c = faces[0].0;
+        let carrier = faces[0].0;
         let m = &self.meetings[index];
-        let mut cuts = self.special_points(index, c, known, predicates, corners);
-        let special: Vec<(N, Point3<N>)> = cuts
-            .iter()
-            .map(|s| (s.t, corners.all[s.vertex].point))
-            .collect();
-        let at_special = |p: &Point3<N>| {
-            let mut points = special.iter().map(|s| s.1);
-            points.any(|s| (s - p).length().is_within(predicates.reach()))
+        let mut cuts = self.special_points(index, carrier, known, predicates, corners);
+        let special = cuts.iter().map(|cut| SpecialPoint {
+            t: cut.t,
+            point: corners.all[cut.vertex].point,
+        });
+        let crossed = CurveAndCarrier {
+            arrangement: self,
+            index,
+            carrier,
+            special: special.collect(),
+            predicates,
         };
-        let (roots, misses) = m.intersection(&self.carriers[c], faces, predicates)?;
-        let mut note = |question, distance, p: &Point3<N>| {
-            let (_, call) = predicates.decide(question, distance, rounded(p));
-            let call = call.map(|call| (call, Between::Curve(index, c)));
-            later.calls.extend(call);
-        };
-        for r in roots {
-            let p = m.curve.point(r.t);
-            if special.iter().any(|s| m.holds_within(r.lo, r.hi, s.0)) || at_special(&p) {
-                continue;
-            }
-            if let Some(margin) = r.margin {
-                note("curve on surface", margin, &p);
-            }
-            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).length());
-            let mut reach = ends[0].max(ends[1]);
-            if r.contact == RootKind::Touching {
-                reach = reach.max(m.touching_length(r.t, &self.carriers[c], predicates));
-            }
-            if reach.is_beyond(predicates.reach()) {
-                later.wide.push(Wide {
-                    meeting: index,
-                    carrier: c,
-                    t: r.t,
-                    reach,
-                });
-                continue;
-            }
-            let all = [m.carriers[0], m.carriers[1], c];
-            let is_simple = r.contact == RootKind::Simple;
-            let p = if is_simple {
-                self.polished(p, all, predicates)
-            } else {
-                p
-            };
-            cuts.push(Cut {
-                t: r.t,
-                vertex: corners.at(&p, &all, predicates),
-            });
+        let (roots, misses) = m.intersection(&self.carriers[carrier], faces, predicates)?;
+        for root in &roots {
+            cuts.extend(crossed.cut_at(root, corners, later));
         }
         for (t, value) in misses {
-            let p = m.curve.point(t);
-            if !at_special(&p) {
-                note("curve beside surface", value, &p);
-            }
+            later.calls.extend(crossed.near_miss(t, value));
         }
         Some(cuts)
     }
@@ -296,6 +260,108 @@ impl<N: Float> Arrangement<N> {
         corner.carriers.sort_unstable();
         corner.carriers.dedup();
         corner.carriers.len() > known
+    }
+}
+
+/// A known point of a curve on a carrier.
+struct SpecialPoint<N: Float = f64> {
+    t: N,
+    point: Point3<N>,
+}
+
+/// A curve that a carrier splits.
+struct CurveAndCarrier<'a, N: Float = f64> {
+    arrangement: &'a Arrangement<N>,
+    /// The index of the curve.
+    index: usize,
+    carrier: usize,
+    /// The common points that are known beforehand.
+    special: Vec<SpecialPoint<N>>,
+    predicates: &'a Predicates,
+}
+
+impl<N: Float> CurveAndCarrier<'_, N> {
+    fn curve(&self) -> &IntersectionCurve<N> {
+        &self.arrangement.meetings[self.index]
+    }
+
+    fn surface(&self) -> &Surface<N> {
+        &self.arrangement.carriers[self.carrier]
+    }
+
+    /// The cut at a root. `None` at a special point, and at a contact of high order, which is
+    /// handled later.
+    fn cut_at(
+        &self,
+        root: &Root<N>,
+        corners: &mut VertexMerger<N>,
+        later: &mut Later<N>,
+    ) -> Option<Cut<N>> {
+        let m = self.curve();
+        let p = m.curve.point(root.t);
+        let within = |s: &SpecialPoint<N>| m.holds_within(root.lo, root.hi, s.t);
+        if self.special.iter().any(within) || self.is_special(&p) {
+            return None;
+        }
+        if let Some(margin) = root.margin {
+            let call = self.close_call("curve on surface", margin, &p);
+            later.calls.extend(call);
+        }
+        let reach = self.contact_length(root, &p);
+        if reach.is_beyond(self.predicates.reach()) {
+            later.wide.push(Wide {
+                meeting: self.index,
+                carrier: self.carrier,
+                t: root.t,
+                reach,
+            });
+            return None;
+        }
+        let all = [m.carriers[0], m.carriers[1], self.carrier];
+        let p = match root.contact {
+            RootKind::Simple => self.arrangement.polished(p, all, self.predicates),
+            _ => p,
+        };
+        Some(Cut {
+            t: root.t,
+            vertex: corners.at(&p, &all, self.predicates),
+        })
+    }
+
+    /// Whether a point coincides with a special point.
+    fn is_special(&self, p: &Point3<N>) -> bool {
+        let reach = self.predicates.reach();
+        let mut special = self.special.iter();
+        special.any(|s| (s.point - p).length().is_within(reach))
+    }
+
+    /// The distance from a root up to which the points are within the resolution.
+    fn contact_length(&self, root: &Root<N>, p: &Point3<N>) -> N {
+        let m = self.curve();
+        let ends = [root.lo, root.hi].map(|t| (m.curve.point(t) - p).length());
+        let reach = ends[0].max(ends[1]);
+        match root.contact {
+            RootKind::Touching => {
+                reach.max(m.touching_length(root.t, self.surface(), self.predicates))
+            }
+            _ => reach,
+        }
+    }
+
+    /// The close call where the curve passes the carrier without a root, but not at a special point.
+    fn near_miss(&self, t: N, distance: N) -> Option<Unlisted> {
+        let p = self.curve().curve.point(t);
+        match self.is_special(&p) {
+            true => None,
+            false => self.close_call("curve beside surface", distance, &p),
+        }
+    }
+
+    /// Decides whether a point of the curve lies on the carrier. Returns the close call, if it is
+    /// one.
+    fn close_call(&self, question: &'static str, distance: N, p: &Point3<N>) -> Option<Unlisted> {
+        let (_, call) = self.predicates.decide(question, distance, rounded(p));
+        call.map(|call| (call, Between::Curve(self.index, self.carrier)))
     }
 }
 

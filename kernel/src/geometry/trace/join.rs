@@ -54,11 +54,15 @@ struct Piece<N: Float = f64> {
     segment: TorusCurveSegment<N>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Root(RootId),
-    /// The passage through a singular point: (point, index of its branch).
-    Pass(usize, usize),
+    /// The passage through a singular point.
+    Pass {
+        point: usize,
+        /// The index of the point's branch.
+        branch: usize,
+    },
 }
 
 impl<N: Float> Tracer<'_, N> {
@@ -206,7 +210,13 @@ impl<N: Float> Tracer<'_, N> {
             }
             let segment = node_segment(first + b, &point.passes[b], &end).ok_or(unresolved)?;
             pieces.push(Piece {
-                ends: [End::Pass(index, b), End::Root(*root)],
+                ends: [
+                    End::Pass {
+                        point: index,
+                        branch: b,
+                    },
+                    End::Root(*root),
+                ],
                 segment,
             });
         }
@@ -325,6 +335,56 @@ impl<N: Float> Corners<N> {
     }
 }
 
+/// The two pieces at every end.
+fn joints<N: Float>(pieces: &[Piece<N>]) -> Result<BTreeMap<End, [usize; 2]>, Unresolved> {
+    let mut at: BTreeMap<End, Vec<usize>> = BTreeMap::new();
+    for (i, p) in pieces.iter().enumerate() {
+        for end in p.ends {
+            at.entry(end).or_default().push(i);
+        }
+    }
+    let pair = |(end, list): (End, Vec<usize>)| match list[..] {
+        [a, b] => Ok((end, [a, b])),
+        _ => {
+            let s = &pieces[list[0]].segment;
+            Err(Unresolved::at([s.from, s.ends[0]]))
+        }
+    };
+    at.into_iter().map(pair).collect()
+}
+
+/// A piece of a branch in the direction of the branch.
+struct Link<N: Float = f64> {
+    /// Where it begins.
+    entry: End,
+    segment: TorusCurveSegment<N>,
+}
+
+/// The closed branch that begins with a piece; its pieces are marked as used.
+fn links<N: Float>(
+    pieces: &[Piece<N>],
+    joints: &BTreeMap<End, [usize; 2]>,
+    start: usize,
+    used: &mut [bool],
+) -> Vec<Link<N>> {
+    let mut links = Vec::new();
+    let (mut here, mut entry) = (start, pieces[start].ends[0]);
+    while !used[here] {
+        used[here] = true;
+        let p = &pieces[here];
+        let forward = p.ends[0] == entry;
+        let segment = match forward {
+            true => p.segment,
+            false => p.segment.reversed(),
+        };
+        links.push(Link { entry, segment });
+        entry = if forward { p.ends[1] } else { p.ends[0] };
+        let pair = joints[&entry];
+        here = if pair[0] == here { pair[1] } else { pair[0] };
+    }
+    links
+}
+
 /// Pieces joined to closed branches.
 fn chain<N: Float>(
     torus: &Torus<N>,
@@ -332,20 +392,7 @@ fn chain<N: Float>(
     points: &[SingularPoint<N>],
     pieces: Vec<Piece<N>>,
 ) -> Result<Traced<N>, Unresolved> {
-    let mut at: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
-    let name = |e: &End| match *e {
-        End::Root(r) => (0, r, 0),
-        End::Pass(p, b) => (1, p, b),
-    };
-    for (i, p) in pieces.iter().enumerate() {
-        for e in &p.ends {
-            at.entry(name(e)).or_default().push(i);
-        }
-    }
-    if let Some((_, list)) = at.iter().find(|(_, l)| l.len() != 2) {
-        let s = &pieces[list[0]].segment;
-        return Err(Unresolved::at([s.from, s.ends[0]]));
-    }
+    let joints = joints(&pieces)?;
     let mut singular: Vec<Singular<N>> = points
         .iter()
         .map(|p| Singular {
@@ -361,31 +408,19 @@ fn chain<N: Float>(
         if used[start] {
             continue;
         }
-        let mut segments = Vec::new();
-        let (mut here, mut entry) = (start, pieces[start].ends[0]);
-        while !used[here] {
-            used[here] = true;
-            let p = &pieces[here];
-            let forward = p.ends[0] == entry;
-            if let End::Pass(s, _) = entry {
-                singular[s]
+        let links = links(&pieces, &joints, start, &mut used);
+        for (index, link) in links.iter().enumerate() {
+            if let End::Pass { point, .. } = link.entry {
+                singular[point]
                     .on
-                    .push((branches.len(), N::from_f64(segments.len() as f64)));
+                    .push((branches.len(), N::from_f64(index as f64)));
             }
-            segments.push(if forward {
-                p.segment
-            } else {
-                p.segment.reversed()
-            });
-            entry = if forward { p.ends[1] } else { p.ends[0] };
-            let pair = &at[&name(&entry)];
-            here = if pair[0] == here { pair[1] } else { pair[0] };
         }
         branches.push(TorusCurve {
             torus: *torus,
             form: form.clone(),
             charts: charts.clone(),
-            segments,
+            segments: links.into_iter().map(|link| link.segment).collect(),
             closed: true,
         });
     }

@@ -11,7 +11,7 @@ mod sight;
 mod volume;
 
 pub use crossing::{SurfaceCrossing, Surfaces};
-pub use sight::{Clearance, SightEvidence};
+pub use sight::{Clearance, SightEvidence, SightSegment};
 pub use volume::Estimate;
 
 use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};

@@ -1,8 +1,8 @@
 //! Recounts the quantitative invisibility of pieces by ray casting on the tree.
 
 use super::Finding;
-use nalgebra::{Point3, Vector3};
-use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence};
+use nalgebra::Point3;
+use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence, SightSegment};
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::camera::projection::{Projection, ViewRay};
@@ -236,7 +236,7 @@ impl Counter<'_> {
     /// Whether a sample is close to an end of its piece in the image. Another contour is close
     /// there.
     fn is_near_end(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
-        let (towards, _) = line_of_sight(&self.projection, place);
+        let towards = line_of_sight(&self.projection, place).towards;
         let lateral = sampled.ends.map(|end| (end - place).cross(&towards).norm());
         lateral
             .iter()
@@ -267,16 +267,19 @@ fn closer(clearance: &Clearance) -> Vec<Clearance> {
     all.take_while(|c| c.lateral >= finest).collect()
 }
 
-/// The direction from a point to the eye, and the distance to the eye or the near plane.
-fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+/// The line from a point to the eye or the near plane.
+fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> SightSegment {
     let eye = projection.towards_eye(p);
     let depth = projection.depth(p);
     let seen = depth - projection.near;
-    let reach = match projection.sight {
+    let length = match projection.sight {
         ViewRay::Eye(_) => eye.distance * (seen / depth),
         ViewRay::Direction(_) => seen,
     };
-    (eye.direction, reach)
+    SightSegment {
+        towards: eye.direction,
+        length,
+    }
 }
 
 /// The number of wrong pieces that are reported individually.

@@ -10,7 +10,7 @@ use premio_matching::camera::{CameraFile, Pinhole};
 use premio_matching::image::{DownsampledImage, ImageFeatures, detector, downsampled};
 use premio_matching::matcher::Matcher;
 use premio_matching::output::explain::explained;
-use premio_matching::output::report::{MatchReport, MatchSeconds, Pose};
+use premio_matching::output::report::{MatchReport, MatchSeconds, Pose, ReportNames};
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_matching::tracker::TrackResult;
@@ -214,9 +214,7 @@ impl<'s> PartFinder<'s> {
     /// ```
     pub fn find(&self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
         let camera = camera.for_picture([picture.width, picture.height])?;
-        Ok(self.find_with(picture.clone(), camera, "", |matcher| {
-            (matcher.find(), None)
-        }))
+        Ok(self.find_with(picture.clone(), camera, "", |matcher| matcher.find()))
     }
 
     /// Searches a picture with a function, which returns the search result, and for a sequence
@@ -232,7 +230,7 @@ impl<'s> PartFinder<'s> {
     /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
     /// let camera = camera.for_picture([64, 48])?;
     /// let finder = PartFinder::new(&solid)?;
-    /// let found = finder.find_with(nothing, camera, "a.png", |matcher| (matcher.find(), None));
+    /// let found = finder.find_with(nothing, camera, "a.png", |matcher| matcher.find());
     /// assert_eq!(found.report().image, "a.png");
     /// # Ok::<(), premio::Error>(())
     /// ```
@@ -241,7 +239,7 @@ impl<'s> PartFinder<'s> {
         picture: Grey,
         camera: Pinhole,
         name: &str,
-        look: impl FnOnce(&Matcher<'_>) -> (SearchResult, Option<bool>),
+        look: impl FnOnce(&Matcher<'_>) -> SearchResult,
     ) -> PictureMatch {
         let started = Instant::now();
         let DownsampledImage {
@@ -258,14 +256,16 @@ impl<'s> PartFinder<'s> {
             camera: &camera,
             options: &self.options,
         };
-        let (result, anew) = look(&matcher);
+        let result = look(&matcher);
         let seconds = MatchSeconds {
             features: detecting,
             matching: started.elapsed().as_secs_f64() - detecting,
         };
-        let names = [name, &self.name];
-        let mut report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
-        report.anew = anew;
+        let names = ReportNames {
+            image: name,
+            part: &self.name,
+        };
+        let report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
         PictureMatch {
             grey,
             features,
@@ -355,10 +355,13 @@ impl PartTracker<'_> {
     /// ```
     pub fn next_with(&mut self, picture: Grey, camera: Pinhole, name: &str) -> PictureMatch {
         let last = self.last;
-        let found = self.finder.find_with(picture, camera, name, |matcher| {
+        let mut searched_anew = None;
+        let mut found = self.finder.find_with(picture, camera, name, |matcher| {
             let TrackResult { result, anew } = matcher.next(last.as_ref());
-            (result, Some(anew))
+            searched_anew = Some(anew);
+            result
         });
+        found.report.anew = searched_anew;
         let accepted = found.best().filter(|m| m.is_accepted());
         self.last = accepted.map(|m: &PartMatch| m.pose);
         found

@@ -12,7 +12,7 @@ use premio::{
     DetectabilityPrior, Detector, Format, Grey, PartFinder, PictureMatch, Pinhole, SearchOptions,
     Strategy, default_detector,
 };
-use premio_matching::output::report::BOP;
+use premio_matching::output::report::{BOP, BopIds};
 use premio_predict::model::file::ModelFile;
 use premio_predict::model::record::Record;
 use std::fmt::Write;
@@ -35,7 +35,7 @@ pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
     let sought = read(&options.sought, session)?;
     let finder = sought.finder(&options.sought)?;
     let look = |picture: Grey, camera: Pinhole, name: &str| {
-        finder.find_with(picture, camera, name, |matcher| (matcher.find(), None))
+        finder.find_with(picture, camera, name, |matcher| matcher.find())
     };
     let told = |found: &PictureMatch| options.explain.then(|| found.explained());
     each(&options.sought, &sought.camera, look, told, session)
@@ -171,7 +171,12 @@ fn each(
         }
         let [scene, object] = options.ids;
         let image = numbered(path).unwrap_or(number);
-        if let Some(line) = report.bop([scene, image, object]) {
+        let ids = BopIds {
+            scene,
+            image,
+            object,
+        };
+        if let Some(line) = report.bop(ids) {
             let _ = writeln!(poses, "{line}");
         }
         let json = match options.images.len() {

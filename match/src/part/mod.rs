@@ -9,7 +9,7 @@ mod visibility_cache;
 
 pub use chain::PartChain;
 use edge_samples::SampledEdges;
-pub use edge_samples::{EdgeSample, PartView, SampledEdge};
+pub use edge_samples::{EdgeEnd, EdgeSample, PartView, SampledEdge};
 pub use symmetry::Symmetry;
 
 use crate::part::detectability_prior::DetectabilityPrior;

@@ -27,6 +27,15 @@ impl HalfEdge {
     }
 }
 
+/// The vertex of an edge at which a seam meets it.
+struct SeamJoint {
+    /// The half that ends there.
+    before: HalfEdge,
+    /// The half that starts there.
+    after: HalfEdge,
+    vertex: usize,
+}
+
 /// The boundary with seams, under construction.
 struct Linking<'a, 'p> {
     brep: &'a Brep,
@@ -142,8 +151,8 @@ impl<'a> Linking<'a, '_> {
         }
     }
 
-    /// The halves of a coedge that end and start where a seam meets it, and the vertex there.
-    fn around(&self, coedge: CoedgeId, t: f64) -> ([HalfEdge; 2], usize) {
+    /// The joint of a coedge at which a seam meets it.
+    fn joint(&self, coedge: CoedgeId, t: f64) -> SeamJoint {
         let pair = self.pairs.edge_of[&coedge];
         let [lo, hi] = self.brep.range(self.brep.topology.coedge(coedge).edge);
         let is_open = self.pairs.ends[pair].is_some();
@@ -164,11 +173,18 @@ impl<'a> Linking<'a, '_> {
         let [before, after] = [(after + count - 1) % count, after].map(|k| parts.start + k);
         let vertex = self.seamed.edges[after].ends[0];
         let sense = self.brep.topology.coedge(coedge).sense;
-        let halves = match sense {
+        let [before, after] = match sense {
             Sense::Along => [before, after],
             Sense::Against => [after, before],
         };
-        (halves.map(|edge| HalfEdge { edge, sense }), vertex)
+        SeamJoint {
+            before: HalfEdge {
+                edge: before,
+                sense,
+            },
+            after: HalfEdge { edge: after, sense },
+            vertex,
+        }
     }
 
     /// Adds a face, or its pieces if its seams divide it.
@@ -234,10 +250,10 @@ impl<'a> Linking<'a, '_> {
                 let [to, from] = if k == 1 { [there, back] } else { [back, there] };
                 ends[k] = match *end {
                     End::Edge { coedge, t } => {
-                        let ([before, after], vertex) = self.around(coedge, t);
-                        next.insert(before, from);
-                        next.insert(to, after);
-                        vertex
+                        let joint = self.joint(coedge, t);
+                        next.insert(joint.before, from);
+                        next.insert(to, joint.after);
+                        joint.vertex
                     }
                     End::Pole(p) => {
                         next.insert(to, from);

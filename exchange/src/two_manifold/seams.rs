@@ -12,7 +12,7 @@ use crate::parameters::{ParameterWindow, turned, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{FaceLocator, PointLocation};
-use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
+use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
 use premio_kernel::geometry::curve::{Circle, Curve};
 use premio_kernel::geometry::surface::Surface;
@@ -53,6 +53,21 @@ pub(super) enum End {
     Pole(Point3<f64>),
     /// The crossing of the two seams of a torus inside the face.
     Crossing,
+}
+
+/// An end of a piece of a track in a face.
+#[derive(Clone, Copy)]
+struct TrackEnd {
+    /// The parameter of the track's curve.
+    t: f64,
+    end: End,
+}
+
+/// A point at which a track enters or leaves a face.
+#[derive(Clone, Copy)]
+struct TrackStop {
+    passage: CrossingSense,
+    at: TrackEnd,
 }
 
 struct Faced<'a> {
@@ -139,10 +154,9 @@ impl Faced<'_> {
             false => self.unless_parted(&whole, 0, least(found))?,
         };
         if let Surface::Torus(_) = surface {
-            let along = |v: f64| Some((v, self.seams(&cut.window.surface, 1, v)?));
             let candidates = self.samples.candidates(&cut.window, 1);
             let found = candidates.into_iter().map(|v| {
-                let (v, seams) = along(v)?;
+                let seams = self.seams(&cut.window.surface, 1, v)?;
                 let window = ParameterWindow {
                     starts: [0.0, v],
                     ..cut.window
@@ -296,10 +310,10 @@ impl Faced<'_> {
         let tracks = self.tracks(surface, across, at);
         tracks.iter().find_map(|track| {
             let pieces = self.pieces(surface, track)?;
-            let seam = |[a, b]: [(f64, End); 2]| Seam {
+            let seam = |[a, b]: [TrackEnd; 2]| Seam {
                 curve: track.curve.clone(),
-                range: [a.0, if b.0 > a.0 { b.0 } else { b.0 + TAU }],
-                ends: [a.1, b.1],
+                range: [a.t, if b.t > a.t { b.t } else { b.t + TAU }],
+                ends: [a.end, b.end],
                 across,
             };
             Some(pieces.into_iter().map(seam).collect())
@@ -378,36 +392,19 @@ impl Faced<'_> {
         }
     }
 
-    /// The pieces of a track in the face: the curve's parameter at each end, and the kind of end.
-    fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[(f64, End); 2]>> {
-        let side = self.brep.sense(self.face);
-        let crossings = track
-            .walk
-            .crossings(surface, side, &self.arcs, self.resolution);
-        let mut stops: Vec<(CrossingSense, f64, End)> = Vec::new();
-        for c in &crossings {
-            let end = End::Edge {
-                coedge: self.coedges[c.arc],
-                t: c.t,
-            };
-            stops.push((c.passage, track.start + c.at * track.by, end));
-        }
-        // Where the face touches itself, the track leaves it before entering it again.
-        for k in 1..stops.len() {
-            let (before, after) = (stops[k - 1], stops[k]);
-            let together = (after.1 - before.1).abs() <= self.resolution * track.by;
-            if together && (before.0, after.0) == (CrossingSense::Entering, CrossingSense::Leaving)
-            {
-                stops.swap(k - 1, k);
-            }
-        }
+    /// The ends of the pieces of a track in the face.
+    fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[TrackEnd; 2]>> {
+        let mut stops = self.stops(surface, track);
         let starts_inside = match stops.first() {
-            Some((passage, ..)) => *passage == CrossingSense::Leaving,
+            Some(stop) => stop.passage == CrossingSense::Leaving,
             None => self.contains(&track.walk.point(1.0 / track.by)),
         };
         match &track.course {
             Course::Round if stops.is_empty() => {
-                let ends = [0.0, TAU].map(|on| (track.start + on, End::Crossing));
+                let ends = [0.0, TAU].map(|on| TrackEnd {
+                    t: track.start + on,
+                    end: End::Crossing,
+                });
                 return Some(if starts_inside {
                     vec![ends]
                 } else {
@@ -420,25 +417,60 @@ impl Faced<'_> {
                 }
             }
             Course::Open { first, last } => {
-                let pole = |t: f64| End::Pole(track.curve.point(t));
+                let pole = |passage: CrossingSense, t: f64| TrackStop {
+                    passage,
+                    at: TrackEnd {
+                        t,
+                        end: End::Pole(track.curve.point(t)),
+                    },
+                };
                 if starts_inside {
-                    let t = (*first)?;
-                    stops.insert(0, (CrossingSense::Entering, t, pole(t)));
+                    stops.insert(0, pole(CrossingSense::Entering, (*first)?));
                 }
                 if stops.len() % 2 == 1 {
-                    let t = (*last)?;
-                    stops.push((CrossingSense::Leaving, t, pole(t)));
+                    stops.push(pole(CrossingSense::Leaving, (*last)?));
                 }
             }
         }
         let pieces = stops.chunks(2).map(|pair| match pair {
-            [
-                (CrossingSense::Entering, a, from),
-                (CrossingSense::Leaving, b, to),
-            ] => Some([(*a, *from), (*b, *to)]),
+            [from, to]
+                if from.passage == CrossingSense::Entering
+                    && to.passage == CrossingSense::Leaving =>
+            {
+                Some([from.at, to.at])
+            }
             _ => None,
         });
         pieces.collect()
+    }
+
+    /// The crossings of a track with the edges of the face, in order.
+    fn stops(&self, surface: &Surface, track: &Track) -> Vec<TrackStop> {
+        let side = self.brep.sense(self.face);
+        let crossings = track
+            .walk
+            .crossings(surface, side, &self.arcs, self.resolution);
+        let stop = |c: &PathCrossing| TrackStop {
+            passage: c.passage,
+            at: TrackEnd {
+                t: track.start + c.at * track.by,
+                end: End::Edge {
+                    coedge: self.coedges[c.arc],
+                    t: c.t,
+                },
+            },
+        };
+        let mut stops: Vec<TrackStop> = crossings.iter().map(stop).collect();
+        // Where the face touches itself, the track leaves it before entering it again.
+        for k in 1..stops.len() {
+            let (before, after) = (stops[k - 1], stops[k]);
+            let together = (after.at.t - before.at.t).abs() <= self.resolution * track.by;
+            let passages = (before.passage, after.passage);
+            if together && passages == (CrossingSense::Entering, CrossingSense::Leaving) {
+                stops.swap(k - 1, k);
+            }
+        }
+        stops
     }
 
     /// The axes of the edges that are circles.

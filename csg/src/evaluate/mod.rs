@@ -48,6 +48,7 @@ mod vertices;
 pub use error::EvaluationError;
 
 use self::arrangement::Arrangement;
+use self::carrier_intersections::Arranged;
 use self::edge_candidates::EdgeCandidate;
 use self::halfspaces::HalfSpaceModel;
 use self::membership::Membership;
@@ -124,7 +125,14 @@ enum Integrals {
     /// f64 values.
     Doubles(FaceIntegrals),
     /// Extended precision: the boundary before it was rounded.
-    Wide(Box<(Brep<F237>, FaceIntegrals<F237>)>),
+    Wide(Box<WideBoundary>),
+}
+
+/// A boundary in extended precision, and its integrals.
+#[derive(Debug)]
+struct WideBoundary {
+    brep: Brep<F237>,
+    measures: FaceIntegrals<F237>,
 }
 
 impl Evaluation {
@@ -152,7 +160,7 @@ impl Evaluation {
     pub fn mass(&self) -> Mass {
         *self.mass.get_or_init(|| match &self.integrals {
             Integrals::Doubles(measures) => measures.mass(&self.brep),
-            Integrals::Wide(wide) => wide.1.mass(&wide.0),
+            Integrals::Wide(wide) => wide.measures.mass(&wide.brep),
         })
     }
 
@@ -160,7 +168,7 @@ impl Evaluation {
     pub fn tight_bounds(&self) -> Aabb {
         match &self.integrals {
             Integrals::Doubles(_) => bounds(&self.brep),
-            Integrals::Wide(wide) => bounds(&wide.0),
+            Integrals::Wide(wide) => bounds(&wide.brep),
         }
     }
 
@@ -168,7 +176,10 @@ impl Evaluation {
     pub fn violations(&self) -> Vec<Violation> {
         match &self.integrals {
             Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
-            Integrals::Wide(wide) => check(&wide.0, &wide.1, F237::from_f64(self.resolution)),
+            Integrals::Wide(wide) => {
+                let resolution = F237::from_f64(self.resolution);
+                check(&wide.brep, &wide.measures, resolution)
+            }
         }
     }
 }
@@ -220,7 +231,10 @@ impl From<Evaluated<F237>> for Evaluation {
             decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            integrals: Integrals::Wide(Box::new((known.brep, known.measures))),
+            integrals: Integrals::Wide(Box::new(WideBoundary {
+                brep: known.brep,
+                measures: known.measures,
+            })),
             view_resolution: None,
             mass: OnceLock::new(),
         }
@@ -356,8 +370,10 @@ fn generated<N: Float>(
     predicates: &Predicates,
     most: usize,
 ) -> Result<Generated<N>, EvaluationError> {
-    let (arrangement, sources) =
-        carrier_intersections::arrange(tree, solids, extent, predicates, most)?;
+    let Arranged {
+        arrangement,
+        sources,
+    } = carrier_intersections::arrange(tree, solids, extent, predicates, most)?;
     let pieces = edge_candidates::pieces(&arrangement, predicates);
     if predicates.is_exact() {
         incidence_proof::prove(&arrangement, &pieces, &sources, predicates)?;
@@ -414,9 +430,9 @@ fn check_rules<N: Float>(
         return Ok(());
     };
     Err(match worst_gap(brep, resolution) {
-        Some((place, distance)) => EvaluationError::IllConditioned {
-            place: rounded(&place),
-            distance: distance.rounded(),
+        Some(gap) => EvaluationError::IllConditioned {
+            place: rounded(&gap.place),
+            distance: gap.distance.rounded(),
             resolution: predicates.resolution(),
         },
         None => EvaluationError::InvalidBoundary(broken),

@@ -8,12 +8,12 @@ use super::vertices::VertexMerger;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::curve_surface::{comes_near, lies_on, roots};
+use premio_kernel::geometry::curve_surface::{CurveSurfaceRoots, comes_near, lies_on, roots};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded, solution};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use premio_kernel::number::roots::{Root, RootKind};
+use premio_kernel::number::roots::{NearMiss, Root, RootKind};
 use rstar::AABB;
 use std::collections::HashMap;
 
@@ -48,24 +48,24 @@ impl<N: Float> Arrangement<N> {
     ) {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
-        let mut near: Vec<(usize, Aabb)> = Vec::new();
+        let mut near: Vec<CarrierFace> = Vec::new();
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
-                let c = self.sides[s.data][k].0;
-                let face = side.bounds.grown(predicates.reach::<N>());
-                if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
-                    near.push((c, face));
+                let carrier = self.sides[s.data][k].carrier;
+                let bounds = side.bounds.grown(predicates.reach::<N>());
+                if !m.carriers.contains(&carrier) && common(&bounds, &m.bounds).is_some() {
+                    near.push(CarrierFace { carrier, bounds });
                 }
             }
         }
-        near.sort_by_key(|n| n.0);
+        near.sort_by_key(|face| face.carrier);
         let known: Vec<Cut<N>> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
-        for faces in near.chunk_by(|a, b| a.0 == b.0) {
+        for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
             match self.cuts_by(index, faces, &known, predicates, corners, later) {
                 Some(found) => cuts.extend(found),
-                None => holding.push(faces[0].0),
+                None => holding.push(faces[0].carrier),
             }
         }
         let m = &mut self.meetings[index];
@@ -78,13 +78,13 @@ impl<N: Float> Arrangement<N> {
     fn cuts_by(
         &self,
         index: usize,
-        faces: &[(usize, Aabb)],
+        faces: &[CarrierFace],
         known: &[Cut<N>],
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Option<Vec<Cut<N>>> {
-        let carrier = faces[0].0;
+        let carrier = faces[0].carrier;
         let m = &self.meetings[index];
         let mut cuts = self.special_points(index, carrier, known, predicates, corners);
         let special = cuts.iter().map(|cut| SpecialPoint {
@@ -98,12 +98,12 @@ impl<N: Float> Arrangement<N> {
             special: special.collect(),
             predicates,
         };
-        let (roots, misses) = m.intersection(&self.carriers[carrier], faces, predicates)?;
-        for root in &roots {
+        let found = m.intersection(&self.carriers[carrier], faces, predicates)?;
+        for root in &found.roots {
             cuts.extend(crossed.cut_at(root, corners, later));
         }
-        for (t, value) in misses {
-            later.calls.extend(crossed.near_miss(t, value));
+        for miss in &found.misses {
+            later.calls.extend(crossed.near_miss(miss));
         }
         Some(cuts)
     }
@@ -263,6 +263,13 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
+/// A face of a carrier, close to a curve.
+struct CarrierFace {
+    carrier: usize,
+    /// Its box, enlarged.
+    bounds: Aabb,
+}
+
 /// A known point of a curve on a carrier.
 struct SpecialPoint<N: Float = f64> {
     t: N,
@@ -349,24 +356,25 @@ impl<N: Float> CurveAndCarrier<'_, N> {
     }
 
     /// The close call where the curve passes the carrier without a root, but not at a special point.
-    fn near_miss(&self, t: N, distance: N) -> Option<Unlisted> {
-        let p = self.curve().curve.point(t);
+    fn near_miss(&self, miss: &NearMiss<N>) -> Option<Unlisted> {
+        let p = self.curve().curve.point(miss.t);
         match self.is_special(&p) {
             true => None,
-            false => self.close_call("curve beside surface", distance, &p),
+            false => self.close_call("curve beside surface", miss.value, &p),
         }
     }
 
     /// Decides whether a point of the curve lies on the carrier. Returns the close call, if it is
     /// one.
     fn close_call(&self, question: &'static str, distance: N, p: &Point3<N>) -> Option<Unlisted> {
-        let (_, call) = self.predicates.decide(question, distance, rounded(p));
-        call.map(|call| (call, Between::Curve(self.index, self.carrier)))
+        let decision = self.predicates.decide(question, distance, rounded(p));
+        let between = Between::Curve {
+            meeting: self.index,
+            carrier: self.carrier,
+        };
+        decision.call.map(|call| Unlisted { call, between })
     }
 }
-
-/// The roots of a surface along a curve, and the near misses.
-type Intersections<N> = (Vec<Root<N>>, Vec<(N, N)>);
 
 impl<N: Float> IntersectionCurve<N> {
     /// The intersections of the curve with a surface, inside the boxes of the surface's faces;
@@ -374,26 +382,26 @@ impl<N: Float> IntersectionCurve<N> {
     fn intersection(
         &self,
         surface: &Surface<N>,
-        faces: &[(usize, Aabb)],
+        faces: &[CarrierFace],
         predicates: &Predicates,
-    ) -> Option<Intersections<N>> {
+    ) -> Option<CurveSurfaceRoots<N>> {
         let resolution = predicates.resolution();
         if lies_on(&self.curve, self.range, surface, resolution) {
             return None;
         }
-        let mut all = Intersections::default();
+        let mut all = CurveSurfaceRoots::default();
         let near = |b: &Aabb| {
-            faces.iter().any(|(_, face)| common(face, b).is_some())
+            faces.iter().any(|face| common(&face.bounds, b).is_some())
                 && comes_near(surface, b, predicates.reach())
         };
         let mut parts = self.parts.as_slice();
-        while let Some(first) = parts.iter().position(|p| near(&p.1)) {
+        while let Some(first) = parts.iter().position(|p| near(&p.bounds)) {
             parts = &parts[first..];
-            let count = parts.iter().take_while(|p| near(&p.1)).count();
-            let range = [parts[0].0[0], parts[count - 1].0[1]];
-            let (found, misses) = roots(&self.curve, range, surface, resolution);
-            all.0.extend(found);
-            all.1.extend(misses);
+            let count = parts.iter().take_while(|p| near(&p.bounds)).count();
+            let range = [parts[0].range[0], parts[count - 1].range[1]];
+            let found = roots(&self.curve, range, surface, resolution);
+            all.roots.extend(found.roots);
+            all.misses.extend(found.misses);
             parts = &parts[count..];
         }
         Some(all)

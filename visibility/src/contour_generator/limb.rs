@@ -168,9 +168,9 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
         .into_iter()
         .map(|c| Limb::new(Curve::Toric(Box::new(c))))
         .collect();
-    for (branch, t) in traced.singular.iter().flat_map(|s| &s.on) {
-        if let Some(limb) = limbs.get_mut(*branch) {
-            limb.nodes.push(*t);
+    for on in traced.singular.iter().flat_map(|s| &s.on) {
+        if let Some(limb) = limbs.get_mut(on.branch) {
+            limb.nodes.push(on.t);
         }
     }
     Ok(limbs)

@@ -1,7 +1,7 @@
 //! Joins the pieces of the curve in the cells to closed branches, through the roots on the cells'
 //! sides and through the singular points.
 
-use super::{Leaf, Singular, Traced};
+use super::{BranchPosition, Leaf, Singular, Traced};
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::blow_up::Chart;
 use crate::geometry::singular::{BranchTangent, SingularPoint};
@@ -411,9 +411,10 @@ fn chain<N: Float>(
         let links = links(&pieces, &joints, start, &mut used);
         for (index, link) in links.iter().enumerate() {
             if let End::Pass { point, .. } = link.entry {
-                singular[point]
-                    .on
-                    .push((branches.len(), N::from_f64(index as f64)));
+                singular[point].on.push(BranchPosition {
+                    branch: branches.len(),
+                    t: N::from_f64(index as f64),
+                });
             }
         }
         branches.push(TorusCurve {

@@ -27,8 +27,17 @@ use crate::number::roots::{RootKind, Roots, isolate};
 pub struct Singular<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
-    /// The branches through it, as (index of the branch, parameter); empty for an isolated point.
-    pub on: Vec<(usize, N)>,
+    /// The branches through it; empty for an isolated point.
+    pub on: Vec<BranchPosition<N>>,
+}
+
+/// A point of a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BranchPosition<N: Float = f64> {
+    /// The index of the branch.
+    pub branch: usize,
+    /// The parameter.
+    pub t: N,
 }
 
 /// The zero set of F.

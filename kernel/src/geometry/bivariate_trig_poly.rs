@@ -5,8 +5,7 @@ mod thirds;
 
 pub use thirds::{Reaches, Thirds};
 
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 
 /// The coefficient of each product of a function of the first angle and one of the second, where
 /// the functions are 1, cos, sin, cos 2, sin 2.

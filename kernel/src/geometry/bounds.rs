@@ -2,9 +2,8 @@
 
 use super::curve::{Curve, Line};
 use super::frame::Frame;
-use crate::number::analytic::Analytic;
 use crate::number::bisection::bisect;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use nalgebra::Point3;

@@ -24,4 +24,5 @@ pub mod torus_parameter;
 pub mod trace;
 mod tracer;
 pub mod trigonometric;
+pub mod unresolved;
 pub mod vector;

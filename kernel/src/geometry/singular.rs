@@ -9,7 +9,8 @@ mod leading_form;
 use super::bivariate_trig_poly::Partials;
 use super::blow_up::Chart;
 use super::torus_grid::{Cell, regular_grid};
-use super::tracer::{Tracer, Unresolved, deepest, near};
+use super::tracer::{Tracer, deepest, near};
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use crate::number::predicates::CLOSE;
 

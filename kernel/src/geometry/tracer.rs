@@ -3,24 +3,9 @@
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Reaches};
 use super::torus_curve::wrap;
 use super::torus_grid::Cell;
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use std::cell::Cell as Counter;
-
-/// The curve has a singular point of an unknown kind, or branches too close to be separated.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
-pub struct Unresolved {
-    /// (θ, φ).
-    pub angles: [f64; 2],
-}
-
-impl Unresolved {
-    pub(super) fn at<N: Float>(angles: [N; 2]) -> Self {
-        Self {
-            angles: angles.map(N::rounded),
-        }
-    }
-}
 
 /// Taylor bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
 pub(super) struct Bounds<N: Float = f64> {

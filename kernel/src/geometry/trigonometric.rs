@@ -1,8 +1,8 @@
 //! Trigonometric polynomials of degree one and two: products, quotients, zeros.
 
 use crate::geometry::vector::solution;
-use crate::number::analytic::{Analytic, harmonic, harmonic_slope};
-use crate::number::float::Float;
+use crate::number::analytic::harmonic_slope;
+use crate::number::float::{Analytic, Float, harmonic};
 use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;

@@ -2,8 +2,8 @@
 
 mod circular;
 
-use super::analytic::{Analytic, sinc_jet};
-use super::float::Float;
+use super::analytic::sinc_jet;
+use super::float::{Analytic, Float};
 use super::gauss_rules::GaussRules;
 use super::legendre::gauss_rules;
 use super::rational::Rational;

@@ -6,12 +6,10 @@
 //! its certified sign, within it as a tangency. Other intervals are halved. The values are
 //! distances, so the resolution is the part's.
 
-pub use super::function::Function;
-
-use super::analytic::Analytic;
 use super::bisection::{bisect, bisect_newton};
 use super::chebyshev_model::ChebyshevModel;
-use super::float::Float;
+use super::float::{Analytic, Float};
+use super::function::Function;
 use super::interval::Interval;
 use super::jet::Jet;
 use super::monotone_samples::{MonotoneSamples, Sample};

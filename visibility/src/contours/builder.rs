@@ -26,7 +26,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::curve_plane::plane_roots;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Plane;
-use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::geometry::unresolved::Unresolved;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::time::Instant;
 

@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve_plane::{line_intersections, plane_roots};
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::Compare;

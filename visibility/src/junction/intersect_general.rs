@@ -16,12 +16,13 @@ use crate::junction::intersect::{Overlap, overlap_of, place_of};
 use crate::junction::overlap::{Runs, Shared};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::number::analytic::Analytic;
 use premio_kernel::number::bisection::bisect_newton;
+use premio_kernel::number::float::Analytic;
+use premio_kernel::number::function::Function;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
-use premio_kernel::number::roots::{Function, Root, Roots, isolate};
+use premio_kernel::number::roots::{Root, Roots, isolate};
 
 /// The distance in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;

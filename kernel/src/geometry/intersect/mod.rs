@@ -15,7 +15,7 @@ use super::region_of_interest::RegionOfInterest;
 use super::surface::{Cone, Surface, SurfaceKind};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
 use super::trace::BranchPosition;
-use super::tracer::Unresolved;
+use super::unresolved::Unresolved;
 use super::vector::rounded as place;
 use crate::geometry::sense::Sense;
 use crate::geometry::vector::Length;

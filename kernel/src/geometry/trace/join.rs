@@ -9,9 +9,9 @@ use crate::geometry::surface::Torus;
 use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
 use crate::geometry::torus_grid::{Cell, Layout, grid, lines};
 use crate::geometry::torus_parameter::TorusParameter;
-use crate::geometry::tracer::{Tracer, Unresolved};
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::geometry::tracer::Tracer;
+use crate::geometry::unresolved::Unresolved;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use std::collections::{BTreeMap, HashMap};
 

@@ -8,8 +8,6 @@
 
 mod join;
 
-pub use super::tracer::Unresolved;
-
 use super::bivariate_trig_poly::BivariateTrigPoly;
 use super::singular::{Critical, singular_points};
 use super::surface::Torus;
@@ -18,6 +16,7 @@ use super::torus_grid::{Cell, Layout};
 use super::torus_parameter::TorusParameter;
 use super::tracer::{Bounds, Tracer, deepest};
 use super::trigonometric::Trigonometric;
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use crate::number::roots::{RootKind, Roots, isolate};
 

@@ -12,9 +12,9 @@ use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
 use crate::geometry::trace::BranchPosition;
 use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
-use crate::number::analytic::{harmonic, harmonic_slope};
+use crate::number::analytic::harmonic_slope;
 use crate::number::bisection::bisect;
-use crate::number::float::Float;
+use crate::number::float::{Float, harmonic};
 use crate::number::predicates::{Predicates, Side};
 
 /// The passage of a curve through a node.

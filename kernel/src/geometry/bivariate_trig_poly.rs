@@ -3,7 +3,7 @@
 
 mod thirds;
 
-pub use thirds::{Reaches, Thirds};
+pub use thirds::{CellPartials, Reaches, Thirds};
 
 use crate::number::float::{Analytic, Float};
 

@@ -1,11 +1,18 @@
 //! Taylor bounds of F(θ, φ) over cells of the parameter torus, and the number of cells examined.
 
-use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Reaches};
+use super::bivariate_trig_poly::{BivariateTrigPoly, CellPartials, Partials, Reaches};
 use super::torus_curve::wrap;
 use super::torus_grid::Cell;
 use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use std::cell::Cell as Counter;
+
+/// A form rounded to f64.
+pub(super) struct RoundedForm<'a> {
+    pub form: &'a BivariateTrigPoly,
+    /// Its rounding error.
+    pub slop: f64,
+}
 
 /// Taylor bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
 pub(super) struct Bounds<N: Float = f64> {
@@ -81,15 +88,18 @@ impl<'a, N: Float> Tracer<'a, N> {
         Ok(())
     }
 
-    /// The form rounded to f64, for extended precision, and its rounding error.
-    pub(super) fn f64_form(&self) -> Option<(&BivariateTrigPoly, f64)> {
+    /// The form rounded to f64, for extended precision.
+    pub(super) fn f64_form(&self) -> Option<RoundedForm<'_>> {
         let form = self.f64_form.as_deref()?;
-        Some((form, slop(form)))
+        Some(RoundedForm {
+            form,
+            slop: slop(form),
+        })
     }
 
     /// A tracer in f64, for a form in extended precision. Its bounds are valid but may be looser.
     pub(super) fn to_f64(&self) -> Option<Tracer<'_>> {
-        let (form, slop) = self.f64_form()?;
+        let RoundedForm { form, slop } = self.f64_form()?;
         Some(Tracer {
             form,
             reaches: self.reaches.to_f64(),
@@ -102,7 +112,10 @@ impl<'a, N: Float> Tracer<'a, N> {
 
     pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
         let [hx, hy] = cell.half();
-        let (p, thirds) = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
+        let CellPartials {
+            partials: p,
+            thirds,
+        } = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
         // The change of the second derivatives over the cell, from the third ones.
         let [xx, xy, yy] = thirds.seconds([hx, hy]);
         let third = xx * hx * hx + N::TWO * xy * hx * hy + yy * hy * hy;

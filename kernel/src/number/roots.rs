@@ -6,7 +6,7 @@
 //! its certified sign, within it as a tangency. Other intervals are halved. The values are
 //! distances, so the resolution is the part's.
 
-use super::bisection::{bisect, bisect_newton};
+use super::bisection::{ValueAndSlope, bisect, bisect_newton};
 use super::chebyshev_model::ChebyshevModel;
 use super::float::{Analytic, Float};
 use super::function::Function;
@@ -394,7 +394,10 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     fn refine(&self, a: N, b: N, fa: N) -> N {
         bisect_newton(a, b, fa, |t| {
             let j = self.f.at(t);
-            (j.v, j.d)
+            ValueAndSlope {
+                value: j.v,
+                slope: j.d,
+            }
         })
     }
 

@@ -7,7 +7,7 @@
 
 use crate::camera::projection::{Projection, ViewRay};
 use nalgebra::Point3;
-use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::curve_plane::{line_intersections, plane_roots};
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
@@ -99,9 +99,11 @@ impl Edgewise {
         // On the wall the image is that of a ruling.
         let frame = &self.carrier.frame;
         let radius = self.carrier.radius;
-        let ruling = frame.point(cos * radius, sin * radius, 0.0);
-        let line = (&ruling, &frame.z);
-        if line_intersections(curve, range, line, resolution, &mut |t, _| found(t)) {
+        let ruling = Line {
+            origin: frame.point(cos * radius, sin * radius, 0.0),
+            direction: frame.z,
+        };
+        if line_intersections(curve, range, &ruling, resolution, &mut |t, _| found(t)) {
             return;
         }
         let plane = Plane {

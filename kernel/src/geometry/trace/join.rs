@@ -7,7 +7,7 @@ use crate::geometry::blow_up::Chart;
 use crate::geometry::singular::{BranchTangent, SingularPoint};
 use crate::geometry::surface::Torus;
 use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
-use crate::geometry::torus_grid::{Cell, Layout, grid, lines};
+use crate::geometry::torus_grid::{Cell, Layout, Zone, grid, lines};
 use crate::geometry::torus_parameter::TorusParameter;
 use crate::geometry::tracer::Tracer;
 use crate::geometry::unresolved::Unresolved;
@@ -22,12 +22,31 @@ type RootId = usize;
 #[derive(Default)]
 struct Sides<N: Float = f64> {
     roots: Vec<[N; 2]>,
-    known: HashMap<(usize, Name, Name, Name), Vec<RootId>>,
+    known: HashMap<SideId, Vec<RootId>>,
 }
 
-/// The zones along one angle, given by its index, as (centre, size). Zones that overlap along the
-/// angle share their lines and have the size of the smallest.
-fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
+/// The identity of a side.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct SideId {
+    /// The index of the angle that is fixed.
+    fixed: usize,
+    /// The line on which it lies.
+    line: Name,
+    /// The corners at both ends.
+    ends: [Name; 2],
+}
+
+/// A root on a side of a cell.
+#[derive(Clone, Copy)]
+struct CellRoot<N: Float = f64> {
+    id: RootId,
+    /// Its angles, close to the cell.
+    angles: [N; 2],
+}
+
+/// The zones along one angle, given by its index. Zones that overlap along the angle share their
+/// lines and have the size of the smallest.
+fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<Zone<N>> {
     let size = |p: &SingularPoint<N>| {
         let over = |q: &&SingularPoint<N>| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
         let sizes = points.iter().filter(over).map(|q| q.zone);
@@ -35,7 +54,10 @@ fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, 
     };
     points
         .iter()
-        .map(|p| (p.angles[k], size(p) * shrink))
+        .map(|p| Zone {
+            centre: p.angles[k],
+            size: size(p) * shrink,
+        })
         .collect()
 }
 
@@ -77,10 +99,8 @@ impl<N: Float> Tracer<'_, N> {
         let cells = grid(&xs, &ys);
         let home = |c: &Cell<N>| {
             let centre = c.centre();
-            let holds = |k: usize, i: usize| {
-                let (at, size) = zones[k][i];
-                wrap(centre[k] - at).abs() <= N::from_f64(0.9) * size
-            };
+            let part = N::from_f64(0.9);
+            let holds = |k: usize, i: usize| zones[k][i].contains(centre[k], part);
             (0..points.len()).find(|&i| holds(0, i) && holds(1, i))
         };
         let (own, free): (Vec<Cell<N>>, Vec<Cell<N>>) =
@@ -107,14 +127,14 @@ impl<N: Float> Tracer<'_, N> {
         chain(torus, self.form, points, pieces)
     }
 
-    /// The roots around a cell, as (id, angles close to the cell).
+    /// The roots around a cell.
     fn around(
         &self,
         cell: &Cell<N>,
         corners: &Corners<N>,
         origin: [N; 2],
         sides: &mut Sides<N>,
-    ) -> Result<Vec<(RootId, [N; 2])>, Unresolved> {
+    ) -> Result<Vec<CellRoot<N>>, Unresolved> {
         let mut all = Vec::new();
         for fixed in [0, 1] {
             let other = 1 - fixed;
@@ -122,7 +142,11 @@ impl<N: Float> Tracer<'_, N> {
                 let name = key(at, origin[fixed]);
                 let marks = corners.between(fixed, name, cell.lo[other], cell.hi[other]);
                 for pair in marks.windows(2) {
-                    let id = (fixed, name, pair[0].bits(), pair[1].bits());
+                    let id = SideId {
+                        fixed,
+                        line: name,
+                        ends: [pair[0].bits(), pair[1].bits()],
+                    };
                     if !sides.known.contains_key(&id) {
                         let roots = self
                             .roots_on(fixed, at, pair[0], pair[1])
@@ -134,10 +158,10 @@ impl<N: Float> Tracer<'_, N> {
                         let ids = ids.collect();
                         sides.known.insert(id, ids);
                     }
-                    for &root in &sides.known[&id] {
-                        let mut p = sides.roots[root];
-                        p[fixed] = at;
-                        all.push((root, p));
+                    for &id in &sides.known[&id] {
+                        let mut angles = sides.roots[id];
+                        angles[fixed] = at;
+                        all.push(CellRoot { id, angles });
                     }
                 }
             }
@@ -149,16 +173,16 @@ impl<N: Float> Tracer<'_, N> {
     fn join(
         &self,
         &Leaf { cell, axis, steep }: &Leaf<N>,
-        mut roots: Vec<(RootId, [N; 2])>,
+        mut roots: Vec<CellRoot<N>>,
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let k = if axis == TorusParameter::Around { 0 } else { 1 };
-        roots.sort_by(|a, b| a.1[k].total_cmp(&b.1[k]));
+        roots.sort_by(|a, b| a.angles[k].total_cmp(&b.angles[k]));
         if roots.len() % 2 == 1 {
             return Err(Unresolved::at(cell.centre()));
         }
         for pair in roots.chunks(2) {
-            let (p, q) = (pair[0].1, pair[1].1);
+            let (p, q) = (pair[0].angles, pair[1].angles);
             let slope = |p: [N; 2]| {
                 let g = self.form.partials(p[0], p[1]);
                 if k == 0 { -g.x / g.y } else { -g.y / g.x }
@@ -178,7 +202,7 @@ impl<N: Float> Tracer<'_, N> {
                 return Err(Unresolved::at(cell.centre()));
             }
             pieces.push(Piece {
-                ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
+                ends: [End::Root(pair[0].id), End::Root(pair[1].id)],
                 segment,
             });
         }
@@ -190,14 +214,18 @@ impl<N: Float> Tracer<'_, N> {
         &self,
         points: &[SingularPoint<N>],
         index: usize,
-        roots: &[(RootId, [N; 2])],
+        roots: &[CellRoot<N>],
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let point = &points[index];
         let unresolved = Unresolved::at(point.angles);
         let first: usize = points[..index].iter().map(|p| p.passes.len()).sum();
         let mut used = vec![[false; 2]; point.passes.len()];
-        for (root, p) in roots {
+        for CellRoot {
+            id: root,
+            angles: p,
+        } in roots
+        {
             let away = [0, 1].map(|k| wrap(p[k] - point.angles[k]));
             let all = point.passes.iter().enumerate();
             let (b, end) = all

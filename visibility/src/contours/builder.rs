@@ -485,7 +485,8 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             source.range,
             surfaces,
             self.scene.projection,
-            [self.scene.resolution, self.scene.tilt],
+            self.scene.resolution,
+            self.scene.tilt,
         )
         .map_or(seen, Image::Edgewise)
     }

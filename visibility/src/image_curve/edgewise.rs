@@ -39,7 +39,8 @@ impl Edgewise {
         range: [f64; 2],
         surfaces: impl Iterator<Item = &'a Surface>,
         projection: &Projection,
-        [resolution, tilt]: [f64; 2],
+        resolution: f64,
+        tilt: f64,
     ) -> Option<Self> {
         let ViewRay::Direction(sight) = projection.sight else {
             return None;

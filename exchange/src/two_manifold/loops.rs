@@ -236,59 +236,80 @@ impl<'a> Linking<'a, '_> {
         next: &mut HashMap<HalfEdge, HalfEdge>,
         order: &mut Vec<HalfEdge>,
     ) {
-        let mut crossing: Option<usize> = None;
-        // At a crossing: the edges from below and from the left, and those upwards and to the
-        // right.
-        let mut star: [Option<usize>; 4] = [None; 4];
+        let mut star = SeamCrossing::default();
         for seam in &cut.seams {
             let edge = self.seamed.edges.len();
-            let (there, back) = (HalfEdge::along(edge), HalfEdge::against(edge));
-            order.extend([there, back]);
-            let mut ends = [0; 2];
-            for (k, end) in seam.ends.iter().enumerate() {
-                // Towards this end, and away from it.
-                let [to, from] = if k == 1 { [there, back] } else { [back, there] };
-                ends[k] = match *end {
-                    End::Edge { coedge, t } => {
-                        let joint = self.joint(coedge, t);
-                        next.insert(joint.before, from);
-                        next.insert(to, joint.after);
-                        joint.vertex
-                    }
-                    End::Pole(p) => {
-                        next.insert(to, from);
-                        self.seamed.vertex(p)
-                    }
-                    End::Crossing => {
-                        star[seam.across + 2 * (1 - k)] = Some(edge);
-                        *crossing.get_or_insert_with(|| {
-                            let p = seam.curve.point(seam.range[k]);
-                            self.seamed.vertex(p)
-                        })
-                    }
-                };
-            }
+            order.extend([HalfEdge::along(edge), HalfEdge::against(edge)]);
+            let ends = [0, 1].map(|k| self.add_seam_end(seam, k, edge, next, &mut star));
             self.seamed.edges.push(seam_edge(seam, ends));
         }
-        let [below, left, above, right] = star;
-        if let (Some(below), Some(left), Some(above), Some(right)) = (below, left, above, right) {
-            // As seen from outside: left if it is also to the left of the surface's normal.
-            let turns = match self.brep.sense(face) {
-                Sense::Along => [
-                    (HalfEdge::along(below), HalfEdge::against(left)),
-                    (HalfEdge::along(left), HalfEdge::along(above)),
-                    (HalfEdge::against(above), HalfEdge::along(right)),
-                    (HalfEdge::against(right), HalfEdge::against(below)),
-                ],
-                Sense::Against => [
-                    (HalfEdge::along(below), HalfEdge::along(right)),
-                    (HalfEdge::along(left), HalfEdge::against(below)),
-                    (HalfEdge::against(above), HalfEdge::against(left)),
-                    (HalfEdge::against(right), HalfEdge::along(above)),
-                ],
-            };
-            next.extend(turns);
+        next.extend(star.turns(self.brep.sense(face)).into_iter().flatten());
+    }
+
+    /// Routes loops around an end of a seam, and returns the vertex there.
+    fn add_seam_end(
+        &mut self,
+        seam: &Seam,
+        k: usize,
+        edge: usize,
+        next: &mut HashMap<HalfEdge, HalfEdge>,
+        star: &mut SeamCrossing,
+    ) -> usize {
+        let (there, back) = (HalfEdge::along(edge), HalfEdge::against(edge));
+        // Towards this end, and away from it.
+        let [to, from] = if k == 1 { [there, back] } else { [back, there] };
+        match seam.ends[k] {
+            End::Edge { coedge, t } => {
+                let joint = self.joint(coedge, t);
+                next.insert(joint.before, from);
+                next.insert(to, joint.after);
+                joint.vertex
+            }
+            End::Pole(p) => {
+                next.insert(to, from);
+                self.seamed.vertex(p)
+            }
+            End::Crossing => {
+                star.edges[seam.across + 2 * (1 - k)] = Some(edge);
+                *star.vertex.get_or_insert_with(|| {
+                    let p = seam.curve.point(seam.range[k]);
+                    self.seamed.vertex(p)
+                })
+            }
         }
+    }
+}
+
+/// The crossing of two seams.
+#[derive(Default)]
+struct SeamCrossing {
+    vertex: Option<usize>,
+    /// The edges from below and from the left, and those upwards and to the right.
+    edges: [Option<usize>; 4],
+}
+
+impl SeamCrossing {
+    /// The turns of loops at the crossing, each from one half to the next; `sense` is that of the
+    /// face.
+    fn turns(&self, sense: Sense) -> Option<[(HalfEdge, HalfEdge); 4]> {
+        let [Some(below), Some(left), Some(above), Some(right)] = self.edges else {
+            return None;
+        };
+        // As seen from outside: left if it is also to the left of the surface's normal.
+        Some(match sense {
+            Sense::Along => [
+                (HalfEdge::along(below), HalfEdge::against(left)),
+                (HalfEdge::along(left), HalfEdge::along(above)),
+                (HalfEdge::against(above), HalfEdge::along(right)),
+                (HalfEdge::against(right), HalfEdge::against(below)),
+            ],
+            Sense::Against => [
+                (HalfEdge::along(below), HalfEdge::along(right)),
+                (HalfEdge::along(left), HalfEdge::against(below)),
+                (HalfEdge::against(above), HalfEdge::against(left)),
+                (HalfEdge::against(right), HalfEdge::along(above)),
+            ],
+        })
     }
 }
 

@@ -15,7 +15,7 @@ use premio_kernel::brep::locate::{FaceLocator, PointLocation};
 use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
 use premio_kernel::geometry::curve::{Circle, Curve};
-use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::surface::{Cone, Cylinder, Surface, Torus};
 use std::f64::consts::TAU;
 
 /// The cut of a face.
@@ -68,6 +68,14 @@ struct TrackEnd {
 struct TrackStop {
     passage: CrossingSense,
     at: TrackEnd,
+}
+
+/// The part of a track along which an arc runs.
+enum Coverage {
+    Nothing,
+    /// Between two parameters of the track's curve.
+    Range([f64; 2]),
+    Everything,
 }
 
 struct Faced<'a> {
@@ -241,40 +249,50 @@ impl Faced<'_> {
         if crossings.iter().any(|c| is_clear(c.at)) {
             return false;
         }
-        let parameter = |p: &Point3<f64>| track.curve.parameter(p);
-        let near = |p: &Point3<f64>| {
-            let on = track.curve.point(parameter(p));
-            (on - p).norm() <= self.resolution
-        };
         let passed = crossings.iter().map(|c| match track.course {
             Course::Round => (track.start + c.at * track.by).rem_euclid(TAU),
             Course::Open { .. } => track.start + c.at * track.by,
         });
         let mut covered: Vec<[f64; 2]> = passed.map(|t| [t, t]).collect();
         for arc in &self.arcs {
-            let [lo, hi] = arc.range;
-            let at = |part: f64| arc.curve.point(lo + part * (hi - lo));
-            if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
-                continue;
+            match self.coverage(arc, track) {
+                Coverage::Nothing => {}
+                Coverage::Range(range) => covered.push(range),
+                Coverage::Everything => return true,
             }
-            if (at(0.0) - at(1.0)).norm() <= self.resolution {
-                // All of a circle.
-                return true;
+        }
+        !covered.is_empty() && self.is_outside_between(covered, track)
+    }
+
+    /// The part of a track along which an arc runs.
+    fn coverage(&self, arc: &DirectedArc<'_>, track: &Track) -> Coverage {
+        let parameter = |p: &Point3<f64>| track.curve.parameter(p);
+        let near = |p: &Point3<f64>| {
+            let on = track.curve.point(parameter(p));
+            (on - p).norm() <= self.resolution
+        };
+        let [lo, hi] = arc.range;
+        let at = |part: f64| arc.curve.point(lo + part * (hi - lo));
+        if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
+            return Coverage::Nothing;
+        }
+        if (at(0.0) - at(1.0)).norm() <= self.resolution {
+            // All of a circle.
+            return Coverage::Everything;
+        }
+        // The end that comes first, as the midpoint shows.
+        let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
+        Coverage::Range(match track.course {
+            Course::Open { .. } => [a.min(b), a.max(b)],
+            Course::Round if (m - a).rem_euclid(TAU) < (b - a).rem_euclid(TAU) => {
+                [a, a + (b - a).rem_euclid(TAU)]
             }
-            // The end that comes first, as the midpoint shows.
-            let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
-            let (a, b) = match track.course {
-                Course::Open { .. } => (a.min(b), a.max(b)),
-                Course::Round if (m - a).rem_euclid(TAU) < (b - a).rem_euclid(TAU) => {
-                    (a, a + (b - a).rem_euclid(TAU))
-                }
-                Course::Round => (b, b + (a - b).rem_euclid(TAU)),
-            };
-            covered.push([a, b]);
-        }
-        if covered.is_empty() {
-            return false;
-        }
+            Course::Round => [b, b + (a - b).rem_euclid(TAU)],
+        })
+    }
+
+    /// Whether a track is outside the face wherever edges do not cover it.
+    fn is_outside_between(&self, mut covered: Vec<[f64; 2]>, track: &Track) -> bool {
         let poles = match track.course {
             Course::Round => [None, None],
             Course::Open { first, last } => [first, last],
@@ -322,35 +340,10 @@ impl Faced<'_> {
 
     /// The line of a constant angle; from several starting points if it closes.
     fn tracks(&self, surface: &Surface, across: usize, at: f64) -> Vec<Track> {
-        let f = surface.frame();
         match surface {
             Surface::Plane(_) => Vec::new(),
-            Surface::Cylinder(s) => {
-                let heights = self.samples.points().map(|p| f.coordinates(p).z);
-                let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
-                let from = f.point(s.radius, 0.0, lowest);
-                let course = Course::Open {
-                    first: None,
-                    last: None,
-                };
-                ruling(surface, from, course).into_iter().collect()
-            }
-            Surface::Cone(s) => {
-                // If edges end at the apex, it starts above the apex.
-                let slants = self.samples.points().map(|p| (p - f.origin).norm());
-                let nearest = slants
-                    .filter(|d| *d > self.resolution)
-                    .fold(f64::INFINITY, f64::min);
-                let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
-                let is_free = !self.samples.points().any(at_apex);
-                let slant = if is_free { 0.0 } else { 0.25 * nearest };
-                let from = f.point(slant * s.sin, 0.0, slant * s.cos);
-                let course = Course::Open {
-                    first: is_free.then_some(0.0),
-                    last: None,
-                };
-                ruling(surface, from, course).into_iter().collect()
-            }
+            Surface::Cylinder(s) => self.cylinder_track(surface, s).into_iter().collect(),
+            Surface::Cone(s) => self.cone_track(surface, s).into_iter().collect(),
             Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
             Surface::Torus(s) => {
                 let window = ParameterWindow {
@@ -361,35 +354,58 @@ impl Faced<'_> {
                 let mut from = self.samples.candidates(&window, 1 - across);
                 from.truncate(STARTS);
                 let tracks = from.into_iter().filter_map(|other| match across {
-                    0 => Some(Track {
-                        walk: SurfacePath::tube(s, &surface.point(at, other), Sense::Along),
-                        curve: tube(surface, s.major, s.minor),
-                        start: other,
-                        by: 1.0 / s.minor,
-                        course: Course::Round,
-                    }),
-                    _ => {
-                        let from = surface.point(other, at);
-                        let radius = s.major + s.minor * at.cos();
-                        let centre = f.origin + f.z * (s.minor * at.sin());
-                        let frame = f.at(centre);
-                        Some(Track {
-                            walk: SurfacePath::parallel(
-                                surface,
-                                &from,
-                                Sense::Along,
-                                self.resolution,
-                            )?,
-                            curve: Curve::Circle(Circle { frame, radius }),
-                            start: other,
-                            by: 1.0 / radius,
-                            course: Course::Round,
-                        })
-                    }
+                    0 => Some(tube_track(surface, s, at, other)),
+                    _ => self.parallel_track(surface, s, at, other),
                 });
                 tracks.collect()
             }
         }
+    }
+
+    /// The ruling of a cylinder, from below the face.
+    fn cylinder_track(&self, surface: &Surface, s: &Cylinder) -> Option<Track> {
+        let heights = self.samples.points().map(|p| s.frame.coordinates(p).z);
+        let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
+        let from = s.frame.point(s.radius, 0.0, lowest);
+        let course = Course::Open {
+            first: None,
+            last: None,
+        };
+        ruling(surface, from, course)
+    }
+
+    /// The ruling of a cone, from its apex. If edges end at the apex, it starts above the apex.
+    fn cone_track(&self, surface: &Surface, s: &Cone) -> Option<Track> {
+        let f = &s.frame;
+        let slants = self.samples.points().map(|p| (p - f.origin).norm());
+        let nearest = slants
+            .filter(|d| *d > self.resolution)
+            .fold(f64::INFINITY, f64::min);
+        let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
+        let is_free = !self.samples.points().any(at_apex);
+        let slant = if is_free { 0.0 } else { 0.25 * nearest };
+        let from = f.point(slant * s.sin, 0.0, slant * s.cos);
+        let course = Course::Open {
+            first: is_free.then_some(0.0),
+            last: None,
+        };
+        ruling(surface, from, course)
+    }
+
+    /// The parallel of a torus at an angle of the tube, from an angle about the axis.
+    fn parallel_track(&self, surface: &Surface, s: &Torus, at: f64, start: f64) -> Option<Track> {
+        let f = &s.frame;
+        let from = surface.point(start, at);
+        let radius = s.major + s.minor * at.cos();
+        let centre = f.origin + f.z * (s.minor * at.sin());
+        let frame = f.at(centre);
+        Some(Track {
+            walk: SurfacePath::parallel(surface, &from, Sense::Along, self.resolution)?,
+            curve: Curve::Circle(Circle { frame, radius }),
+            start,
+            by: 1.0 / radius,
+            course: Course::Round,
+        })
     }
 
     /// The ends of the pieces of a track in the face.
@@ -491,6 +507,17 @@ impl Faced<'_> {
         let surface = self.brep.surface(self.face);
         let (side, arcs) = (self.brep.sense(self.face), self.arcs.clone());
         FaceLocator::new(surface, side, arcs, self.resolution).place(p)
+    }
+}
+
+/// The circle about a torus's tube at an angle about the axis, from an angle of the tube.
+fn tube_track(surface: &Surface, s: &Torus, at: f64, start: f64) -> Track {
+    Track {
+        walk: SurfacePath::tube(s, &surface.point(at, start), Sense::Along),
+        curve: tube(surface, s.major, s.minor),
+        start,
+        by: 1.0 / s.minor,
+        course: Course::Round,
     }
 }
 

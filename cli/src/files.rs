@@ -36,7 +36,11 @@ enum Identity {
 
 /// Device and inode, where the system has them; otherwise the real path.
 #[cfg(unix)]
-type FileId = (u64, u64);
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct FileId {
+    device: u64,
+    inode: u64,
+}
 #[cfg(not(unix))]
 type FileId = PathBuf;
 
@@ -252,7 +256,10 @@ fn identity(path: &Path) -> Option<Identity> {
 #[cfg(unix)]
 fn present(_: &Path, found: &Metadata) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;
-    Some((found.dev(), found.ino()))
+    Some(FileId {
+        device: found.dev(),
+        inode: found.ino(),
+    })
 }
 
 #[cfg(not(unix))]

@@ -167,11 +167,17 @@ pub fn format(path: &Path) -> Result<Format, CliError> {
     })
 }
 
+/// A camera, and the text of its file.
+pub struct CameraText {
+    pub camera: ViewCamera,
+    pub text: String,
+}
+
 /// The camera of a file, and the file's text.
-pub fn camera_of_file(path: &Path, session: Session) -> Result<(ViewCamera, String), CliError> {
+pub fn camera_of_file(path: &Path, session: Session) -> Result<CameraText, CliError> {
     let text = session.limits.read_text(path)?;
     let camera = ViewCamera::from_json(&text).map_err(|e| refused_camera(path, &text, &e))?;
-    Ok((camera, text))
+    Ok(CameraText { camera, text })
 }
 
 /// The error of a camera file, at the wrong key.

@@ -19,26 +19,42 @@ pub fn write(text: impl AsRef<[u8]>, to: Option<&Path>) -> Result<(), CliError> 
 #[derive(Debug, Default)]
 pub struct Outputs {
     /// The contents of files.
-    files: Vec<(Vec<u8>, PathBuf)>,
+    files: Vec<OutputFile>,
     /// Devices, pipes, and standard output, where there is no path: their content cannot be taken
     /// back.
-    streams: Vec<(Vec<u8>, Option<PathBuf>)>,
+    streams: Vec<OutputStream>,
+}
+
+/// The content of a file.
+#[derive(Debug)]
+struct OutputFile {
+    bytes: Vec<u8>,
+    path: PathBuf,
+}
+
+/// The content of a device, a pipe, or standard output where there is no path.
+#[derive(Debug)]
+struct OutputStream {
+    bytes: Vec<u8>,
+    path: Option<PathBuf>,
 }
 
 impl Outputs {
     /// Adds an output: a file, or otherwise standard output.
     pub fn add(&mut self, bytes: Vec<u8>, to: Option<&Path>) -> Result<(), CliError> {
         let Some(path) = to else {
-            self.streams.push((bytes, None));
+            self.streams.push(OutputStream { bytes, path: None });
             return Ok(());
         };
         let failed = |e: io::Error| CliError::input(format!("{}: {e}", path.display()));
         let target = target(path).map_err(failed)?;
         if is_no_file(&target) {
             // A device or a pipe must not be replaced.
-            self.streams.push((bytes, Some(target)));
+            let path = Some(target);
+            self.streams.push(OutputStream { bytes, path });
         } else {
-            self.files.push((bytes, target));
+            let path = target;
+            self.files.push(OutputFile { bytes, path });
         }
         Ok(())
     }
@@ -56,12 +72,12 @@ impl Outputs {
             |path: &Path, e: io::Error| CliError::input(format!("{}: {e}", path.display()));
         // All are written to temporary files before the first is renamed.
         let mut whole = Vec::new();
-        for (bytes, path) in self.files {
+        for OutputFile { bytes, path } in self.files {
             let file = staged(&bytes, &path).map_err(|e| failed(&path, e))?;
             whole.push((file, path));
         }
         let mut broken = false;
-        for (bytes, path) in self.streams {
+        for OutputStream { bytes, path } in self.streams {
             let written = match path {
                 None => stdout(&bytes),
                 Some(path) => fs::write(&path, bytes).map_err(|e| failed(&path, e)),

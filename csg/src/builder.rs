@@ -296,7 +296,7 @@ impl Builder {
         if moves.motion().is_identity() {
             return part;
         }
-        let (steps, motion) = moves.into_parts();
+        let Transform { steps, motion } = moves;
         let placement = Placement {
             motion,
             ..Placement::default()

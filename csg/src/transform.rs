@@ -87,8 +87,9 @@ pub(crate) fn along(axis: usize, length: Rational) -> [Rational; 3] {
 /// A sequence of steps, and the motion that they compose to.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Transform {
-    steps: Vec<TransformStep>,
-    motion: Motion,
+    pub(crate) steps: Vec<TransformStep>,
+    /// The motion to which the steps compose.
+    pub(crate) motion: Motion,
 }
 
 impl Transform {
@@ -187,10 +188,6 @@ impl Transform {
     /// The steps, in order.
     pub(crate) fn steps(&self) -> &[TransformStep] {
         &self.steps
-    }
-
-    pub(crate) fn into_parts(self) -> (Vec<TransformStep>, Motion) {
-        (self.steps, self.motion)
     }
 }
 

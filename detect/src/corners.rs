@@ -28,7 +28,7 @@ pub(super) fn corners(
     segments: &[DetectedSegment],
 ) -> Vec<DetectedCorner> {
     let reach = reach(detector);
-    let (arms, mut groups) = arms(pixels, chains, segments);
+    let SegmentEnds { arms, mut groups } = SegmentEnds::new(pixels, chains, segments);
     let mut free: Vec<usize> = (0..arms.len()).filter(|&i| arms[i].free).collect();
     free.sort_by(|&i, &j| arms[i].end.at[1].total_cmp(&arms[j].end.at[1]));
     for (k, &i) in free.iter().enumerate() {
@@ -86,43 +86,47 @@ pub(super) fn extend(
     }
 }
 
-/// The ends of all segments, two for each, and for each the index of the end that it is joined to
-/// along the chain, or its own.
-fn arms(
-    pixels: &[EdgePixel],
-    chains: &[EdgeChain],
-    segments: &[DetectedSegment],
-) -> (Vec<Arm>, Vec<usize>) {
-    let mut arms = Vec::new();
-    let mut groups: Vec<usize> = Vec::new();
-    let mut first = 0;
-    for (number, s) in (0_u32..).zip(segments) {
-        let chain = &chains[s.chain as usize];
-        let last = s.range[1] as usize == chain.pixels.len();
-        if s.range[0] == 0 {
-            first = arms.len();
+/// The ends of all segments.
+struct SegmentEnds {
+    /// Two ends for each segment.
+    arms: Vec<Arm>,
+    /// By end: the index of the end that it is joined to along the chain, or its own.
+    groups: Vec<usize>,
+}
+
+impl SegmentEnds {
+    fn new(pixels: &[EdgePixel], chains: &[EdgeChain], segments: &[DetectedSegment]) -> Self {
+        let mut arms = Vec::new();
+        let mut groups: Vec<usize> = Vec::new();
+        let mut first = 0;
+        for (number, s) in (0_u32..).zip(segments) {
+            let chain = &chains[s.chain as usize];
+            let last = s.range[1] as usize == chain.pixels.len();
+            if s.range[0] == 0 {
+                first = arms.len();
+            }
+            let at = |k: u32| pixels[chain.pixels[k as usize] as usize].at;
+            let bare = [at(s.range[0]), at(s.range[1] - 1)];
+            let ends = tangents(&s.shape, bare);
+            for (k, end) in ends.into_iter().enumerate() {
+                let outer = if k == 0 { s.range[0] == 0 } else { last };
+                groups.push(arms.len());
+                arms.push(Arm {
+                    segment: number,
+                    end,
+                    free: outer && !chain.closed,
+                });
+            }
+            let here = arms.len() - 2;
+            if s.range[0] > 0 {
+                groups[here] = here - 1;
+            }
+            if last && chain.closed && here > first {
+                groups[here + 1] = first;
+            }
         }
-        let at = |k: u32| pixels[chain.pixels[k as usize] as usize].at;
-        let bare = [at(s.range[0]), at(s.range[1] - 1)];
-        let ends = tangents(&s.shape, bare);
-        for (k, end) in ends.into_iter().enumerate() {
-            let outer = if k == 0 { s.range[0] == 0 } else { last };
-            groups.push(arms.len());
-            arms.push(Arm {
-                segment: number,
-                end,
-                free: outer && !chain.closed,
-            });
-        }
-        let here = arms.len() - 2;
-        if s.range[0] > 0 {
-            groups[here] = here - 1;
-        }
-        if last && chain.closed && here > first {
-            groups[here + 1] = first;
-        }
+        Self { arms, groups }
     }
-    (arms, groups)
 }
 
 /// The ends of a shape, with the tangents there; points without tangents where it has none.

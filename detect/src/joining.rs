@@ -92,7 +92,7 @@ pub(super) fn join(
 fn partners(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<usize>> {
     let mut next = vec![None; chains.len()];
     let mut taken = vec![false; chains.len()];
-    for (_, tail, head) in pairs(chains, pixels, gap) {
+    for Continuation { tail, head, .. } in continuations(chains, pixels, gap) {
         if next[tail].is_none() && !taken[head] {
             next[tail] = Some(head);
             taken[head] = true;
@@ -101,33 +101,56 @@ fn partners(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Option<
     next
 }
 
-/// The pairs of chains of which the second may follow the first, the nearest and straightest pairs
-/// first.
-fn pairs(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<(f64, usize, usize)> {
+/// A pair of chains of which the second may follow the first.
+struct Continuation {
+    /// The cost, in pixels.
+    cost: f64,
+    /// The index of the first chain.
+    tail: usize,
+    /// The index of the second chain.
+    head: usize,
+}
+
+/// An end of a chain.
+#[derive(Clone, Copy)]
+struct ChainEnd {
+    /// The index of the chain.
+    chain: usize,
+    end: End,
+}
+
+/// The pairs of chains that may continue each other, the nearest and straightest first.
+fn continuations(chains: &[EdgeChain], pixels: &[EdgePixel], gap: f64) -> Vec<Continuation> {
     let open = (0..chains.len()).filter(|&i| !chains[i].closed);
-    let ends: Vec<(usize, [End; 2])> = open.map(|i| (i, ends(&chains[i], pixels))).collect();
-    let mut heads: Vec<(usize, End)> = ends.iter().map(|(i, e)| (*i, e[0])).collect();
-    heads.sort_by(|(_, a), (_, b)| a.at[1].total_cmp(&b.at[1]));
+    let ends = open.map(|chain| ends(&chains[chain], pixels).map(|end| ChainEnd { chain, end }));
+    let ends: Vec<[ChainEnd; 2]> = ends.collect();
+    let mut heads: Vec<ChainEnd> = ends.iter().map(|[head, _]| *head).collect();
+    heads.sort_by(|a, b| a.end.at[1].total_cmp(&b.end.at[1]));
     let slope = |i: &u32| pixels[*i as usize].gradient;
     let agree = |tail: Option<&u32>, head: Option<&u32>| {
         let both = tail.map(slope).zip(head.map(slope));
         both.is_some_and(|(a, b)| a[0] * b[0] + a[1] * b[1] > 0.0)
     };
     let mut pairs = Vec::new();
-    for (tail, [_, end]) in &ends {
-        let first = heads.partition_point(|(_, h)| h.at[1] < end.at[1] - gap);
+    for [_, last] in &ends {
+        let (tail, end) = (last.chain, &last.end);
+        let first = heads.partition_point(|h| h.end.at[1] < end.at[1] - gap);
         let near = heads[first..].iter();
-        for (head, h) in near.take_while(|(_, h)| h.at[1] <= end.at[1] + gap) {
-            if tail == head && chains[*tail].pixels.len() < RING {
+        for first in near.take_while(|h| h.end.at[1] <= end.at[1] + gap) {
+            let head = first.chain;
+            if tail == head && chains[tail].pixels.len() < RING {
                 continue;
             }
-            let one_side = agree(chains[*tail].pixels.last(), chains[*head].pixels.first());
-            if let Some(cost) = cost(end, h, gap).filter(|_| one_side) {
-                pairs.push((cost, *tail, *head));
+            let one_side = agree(chains[tail].pixels.last(), chains[head].pixels.first());
+            if let Some(cost) = cost(end, &first.end, gap).filter(|_| one_side) {
+                pairs.push(Continuation { cost, tail, head });
             }
         }
     }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    pairs.sort_by(|a, b| {
+        let chains = [a.tail, a.head].cmp(&[b.tail, b.head]);
+        a.cost.total_cmp(&b.cost).then(chains)
+    });
     pairs
 }
 

@@ -97,7 +97,7 @@ impl<'a> Fitter<'a> {
         let both = self
             .pieces(&walk.points, vec![0, back, front])
             .fitted_by_one(0..2);
-        if let Some((bent, _)) = both {
+        if let Some(CommonFit { bent, .. }) = both {
             let range = 0..front;
             walk.stretches.splice(0..2, [Stretch { range, bent }]);
         }
@@ -208,22 +208,31 @@ fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
 }
 
+/// A curve that fits several pieces.
+#[derive(Clone, Copy)]
+struct CommonFit {
+    /// Whether it is an ellipse, not a line.
+    bent: bool,
+    /// The root mean square distance.
+    rms: f64,
+}
+
 impl Pieces<'_> {
     /// The runs of points, each of as many pieces as one curve fits. The neighbours that one curve
     /// fits best are merged first, so that a curve is complete before its ends are tried.
     fn merged(mut self) -> Vec<Stretch> {
         let count = self.squares.len();
-        if let Some((bent, _)) = self.fitted_by_one(0..count).filter(|_| count > 1) {
-            let range = 0..self.points.len();
+        if let Some(fit) = self.fitted_by_one(0..count).filter(|_| count > 1) {
+            let (range, bent) = (0..self.points.len(), fit.bent);
             return vec![Stretch { range, bent }];
         }
         let mut pairs: Vec<_> = (1..count)
             .map(|i| self.fitted_by_one(i - 1..i + 1))
             .collect();
         loop {
-            let told = pairs.iter().enumerate();
-            let told = told.filter_map(|(i, pair)| pair.map(|(bent, rms)| (i, bent, rms)));
-            let Some((i, kind, rms)) = told.min_by(|a, b| a.2.total_cmp(&b.2)) else {
+            let fitted = pairs.iter().enumerate();
+            let fitted = fitted.filter_map(|(i, pair)| pair.map(|fit: CommonFit| (i, fit)));
+            let Some((i, fit)) = fitted.min_by(|(_, a), (_, b)| a.rms.total_cmp(&b.rms)) else {
                 break;
             };
             self.breaks.remove(i + 1);
@@ -231,7 +240,8 @@ impl Pieces<'_> {
             self.bent.remove(i + 1);
             pairs.remove(i);
             let length = self.breaks[i + 1] - self.breaks[i];
-            (self.squares[i], self.bent[i]) = (rms * rms * length as f64, kind);
+            self.squares[i] = fit.rms * fit.rms * length as f64;
+            self.bent[i] = fit.bent;
             for k in [i.checked_sub(1), Some(i)].into_iter().flatten() {
                 if k < pairs.len() {
                     pairs[k] = self.fitted_by_one(k..k + 2);
@@ -245,9 +255,9 @@ impl Pieces<'_> {
             .collect()
     }
 
-    /// Whether the curve that fits the points of pieces about as well as their own curves is an
-    /// ellipse, or a line, with its root mean square distance; none where neither fits.
-    fn fitted_by_one(&self, pieces: Range<usize>) -> Option<(bool, f64)> {
+    /// The curve that fits the points of pieces about as well as their own curves; none where
+    /// neither a line nor an ellipse does.
+    fn fitted_by_one(&self, pieces: Range<usize>) -> Option<CommonFit> {
         let range = self.breaks[pieces.start]..self.breaks[pieces.end];
         let squares: f64 = self.squares[pieces.clone()].iter().sum();
         let rms = (squares / range.len() as f64).sqrt();
@@ -260,7 +270,10 @@ impl Pieces<'_> {
             // Where a corner may displace the ends, they may be farther away.
             let mut distances =
                 distances.map(|(i, d)| if inner.contains(&i) { d } else { 0.5 * d });
-            return distances.all(near).then_some((false, fit.rms));
+            return distances.all(near).then_some(CommonFit {
+                bent: false,
+                rms: fit.rms,
+            });
         }
         let limit = if self.determine_residual(pieces.clone()) {
             LOOSER * rms
@@ -279,7 +292,10 @@ impl Pieces<'_> {
         let all = points
             .iter()
             .all(|&p| near(distance_to_conic(&fit.conic, p)));
-        (all && runs_along(points, fit.centre)).then_some((true, fit.rms))
+        (all && runs_along(points, fit.centre)).then_some(CommonFit {
+            bent: true,
+            rms: fit.rms,
+        })
     }
 
     /// Whether all of some pieces are straight and long enough to determine the residual of edges

@@ -20,7 +20,7 @@ pub(super) fn split_closed(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     around.extend(points.first());
     let far = farthest(points.iter().map(|&p| distance(p, points[0])));
     let mut breaks = vec![0];
-    if let Some((far, _)) = far.filter(|&(far, _)| far > 0) {
+    if let Some(far) = far.map(|far| far.index).filter(|&far| far > 0) {
         divide(&around, [0, far], tolerance, &mut breaks);
         breaks.push(far);
         divide(&around, [far, n], tolerance, &mut breaks);
@@ -34,7 +34,7 @@ pub(super) fn split_closed(points: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
 pub(super) fn outermost(points: &[[f64; 2]]) -> usize {
     let n = points.len() as f64;
     let middle = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
-    farthest(points.iter().map(|&p| distance(p, middle))).map_or(0, |(i, _)| i)
+    farthest(points.iter().map(|&p| distance(p, middle))).map_or(0, |far| far.index)
 }
 
 /// Adds the indices at which the range between two points, inclusive, is split.
@@ -46,8 +46,8 @@ fn divide(points: &[[f64; 2]], stretch: [usize; 2], tolerance: f64, breaks: &mut
         let inner = from + 1..to;
         let far = farthest(inner.map(|i| from_chord(points[i], chord)));
         match far {
-            Some((i, distance)) if distance > tolerance => {
-                let at = from + 1 + i;
+            Some(far) if far.distance > tolerance => {
+                let at = from + 1 + far.index;
                 left.push([at, to]);
                 left.push([from, at]);
             }
@@ -57,12 +57,20 @@ fn divide(points: &[[f64; 2]], stretch: [usize; 2], tolerance: f64, breaks: &mut
     }
 }
 
-/// The first of the largest values, with it.
-fn farthest(distances: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
-    let mut best = None;
-    for (i, distance) in distances.enumerate() {
-        if best.is_none_or(|(_, b)| distance > b) {
-            best = Some((i, distance));
+/// The largest of some distances.
+#[derive(Clone, Copy)]
+struct Farthest {
+    /// The index.
+    index: usize,
+    distance: f64,
+}
+
+/// The first of the largest distances.
+fn farthest(distances: impl Iterator<Item = f64>) -> Option<Farthest> {
+    let mut best: Option<Farthest> = None;
+    for (index, distance) in distances.enumerate() {
+        if best.is_none_or(|b| distance > b.distance) {
+            best = Some(Farthest { index, distance });
         }
     }
     best

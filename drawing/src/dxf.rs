@@ -167,14 +167,27 @@ struct Head {
     dashes: f64,
 }
 
-/// The layers of a sheet's frame and of the rest of its title block, with their line weights in
-/// hundredths of a millimetre.
-const FRAME: (&str, u32) = ("FRAME", 70);
-const TITLE: (&str, u32) = ("TITLE", 25);
+/// A layer of a sheet's furniture.
+#[derive(Clone, Copy)]
+struct FurnitureLayer {
+    name: &'static str,
+    /// The line weight, in hundredths of a millimetre.
+    weight: u32,
+}
+
+/// The layers of a sheet's frame and of the rest of its title block.
+const FRAME: FurnitureLayer = FurnitureLayer {
+    name: "FRAME",
+    weight: 70,
+};
+const TITLE: FurnitureLayer = FurnitureLayer {
+    name: "TITLE",
+    weight: 25,
+};
 
 fn document(
     head: &Head,
-    layers: &[(&str, u32)],
+    layers: &[FurnitureLayer],
     entities: impl FnOnce(&mut Groups, u32),
 ) -> String {
     let mut g = Groups {
@@ -219,7 +232,7 @@ fn header(g: &mut Groups, head: &Head) {
 }
 
 /// Writes the tables; returns the records of the model space and the paper space.
-fn tables(g: &mut Groups, more: &[(&str, u32)]) -> [u32; 2] {
+fn tables(g: &mut Groups, more: &[FurnitureLayer]) -> [u32; 2] {
     g.section("TABLES");
     g.table("VPORT", 0);
     g.put(0, "ENDTAB");
@@ -240,8 +253,8 @@ fn tables(g: &mut Groups, more: &[(&str, u32)]) -> [u32; 2] {
             layer(g, t, &layer_name(l, visible), visible, weight);
         }
     }
-    for (name, weight) in more {
-        layer(g, t, name, true, *weight);
+    for &FurnitureLayer { name, weight } in more {
+        layer(g, t, name, true, weight);
     }
     g.put(0, "ENDTAB");
     let t = g.table("STYLE", 1);
@@ -328,21 +341,21 @@ fn start(g: &mut Groups, name: &str, class: &str, layer: &str, owner: u32) {
 fn furniture(g: &mut Groups, mark: &SheetMark, paper: f64, owner: u32) {
     match mark {
         SheetMark::Line([a, b], weight) => {
-            let (layer, _) = match weight {
+            let layer = match weight {
                 Weight::Thick => FRAME,
                 Weight::Thin => TITLE,
             };
-            start(g, "LINE", "AcDbLine", layer, owner);
+            start(g, "LINE", "AcDbLine", layer.name, owner);
             g.point(10, a.x * paper, a.y * paper);
             g.point(11, b.x * paper, b.y * paper);
         }
         SheetMark::Circle(centre, radius) => {
-            start(g, "CIRCLE", "AcDbCircle", TITLE.0, owner);
+            start(g, "CIRCLE", "AcDbCircle", TITLE.name, owner);
             g.point(10, centre.x * paper, centre.y * paper);
             g.number(40, radius * paper);
         }
         SheetMark::Text(at, height, text) => {
-            start(g, "TEXT", "AcDbText", TITLE.0, owner);
+            start(g, "TEXT", "AcDbText", TITLE.name, owner);
             g.point(10, at.x * paper, at.y * paper);
             g.number(40, height * paper);
             g.put(1, escape::dxf(text));

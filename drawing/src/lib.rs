@@ -167,13 +167,23 @@ impl Drawing {
 /// The number of points of a piece of a contour that are used for the extent.
 const PLACES: u32 = 16;
 
+/// A point of a contour.
+struct ContourPlace<'c> {
+    contour: &'c Contour,
+    /// The parameter on its curve.
+    t: f64,
+}
+
 /// The points of contours from which their extent is computed.
-fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = (&'c Contour, f64)> {
+fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = ContourPlace<'c>> {
     let of = |contour: &'c Contour| {
         let pieces = contour.pieces.iter();
         pieces.flat_map(move |piece| {
             let [a, b] = piece.range;
-            (0..=PLACES).map(move |k| (contour, a + (b - a) * f64::from(k) / f64::from(PLACES)))
+            (0..=PLACES).map(move |k| ContourPlace {
+                contour,
+                t: a + (b - a) * f64::from(k) / f64::from(PLACES),
+            })
         })
     };
     contours.iter().flat_map(move |contour| of(contour))
@@ -182,7 +192,7 @@ fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = (&'c Contour, f6
 fn extent(maker: &ArcMaker<'_>, contours: &[&Contour]) -> [Point2<f64>; 2] {
     let mut lo = Point2::new(f64::INFINITY, f64::INFINITY);
     let mut hi = -lo;
-    for (contour, t) in places(contours) {
+    for ContourPlace { contour, t } in places(contours) {
         let p = maker.point(contour, t);
         lo = lo.inf(&p);
         hi = hi.sup(&p);
@@ -195,7 +205,7 @@ fn extent(maker: &ArcMaker<'_>, contours: &[&Contour]) -> [Point2<f64>; 2] {
 
 /// The part's resolution in the image, where it is largest.
 fn resolution(maker: &ArcMaker<'_>, contours: &[&Contour]) -> f64 {
-    let scale = places(contours).map(|(contour, t)| {
+    let scale = places(contours).map(|ContourPlace { contour, t }| {
         let p = contour.space_curve.point(t);
         maker.projection.magnification(&p)
     });

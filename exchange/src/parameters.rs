@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Point3};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Sphere, Surface, turn};
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::jet::Jet;
 use std::f64::consts::TAU;
 

@@ -10,7 +10,7 @@ use crate::parameters::ParameterWindow;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::jet::Jet;
 
 /// The degree of all splines.

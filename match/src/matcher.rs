@@ -15,7 +15,7 @@ use crate::search::monitor::{SEARCH_STEPS, SearchMonitor, SearchStopped};
 use crate::search::{Solution, search};
 use crate::verification::axis_alignment::framed;
 use crate::verification::part_match::{FeaturePair, Found, PartMatch, SearchOptions, SearchResult};
-use crate::verification::residuals::SystematicOffset;
+use crate::verification::residuals::{SystematicOffset, SystematicOffsets};
 use crate::verification::score_weights::WEIGHTS;
 use crate::verification::scoring::{ScoreMeasures, fitted, related, with_prior};
 use crate::verification::shape_evidence::ShapeEvidence;
@@ -163,8 +163,7 @@ impl Matcher<'_> {
         pulls: Vec<Vec<PointToLine>>,
     ) -> Option<PartMatch> {
         let pose = refined.pose;
-        let [squares, weights] = refined.squares;
-        let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
+        let rms = (refined.squares / refined.weights.max(f64::MIN_POSITIVE)).sqrt();
         let distance = (pose * self.part.centre).z;
         let inverse = with_prior(&refined.information, distance).try_inverse()?;
         // The covariance that the attributes used in the score give: an offset and an angle of each
@@ -198,9 +197,9 @@ impl Matcher<'_> {
     /// Completes a match with its residuals, its shape evidence and its prior odds.
     fn scored(&self, found: PartMatch) -> PartMatch {
         let mut scored = found;
-        let (all, each) = SystematicOffset::new(self.camera, &scored.pose, &scored.pulls);
-        scored.systematic_offset = all;
-        for (pair, systematic_offset) in scored.pairs.iter_mut().zip(each) {
+        let offsets = SystematicOffsets::new(self.camera, &scored.pose, &scored.pulls);
+        scored.systematic_offset = offsets.joint;
+        for (pair, systematic_offset) in scored.pairs.iter_mut().zip(offsets.by_feature) {
             if let (Some(found), Some(systematic_offset)) = (&mut pair.found, systematic_offset) {
                 found.systematic_offset = systematic_offset;
             }

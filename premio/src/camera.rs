@@ -1,6 +1,6 @@
 //! Cameras of views.
 
-use crate::solid::Solid;
+use crate::solid::{Solid, SolidExtent};
 use crate::{Error, Result};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_drawing::sheet::StandardView;
@@ -293,7 +293,7 @@ impl Camera {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn resolve(&self, solid: &Solid) -> Result<ViewCamera, CameraError> {
-        let (middle, size) = solid.extent();
+        let SolidExtent { middle, size } = solid.extent();
         let up = self.up.map_or(Vector3::z(), Vector3::from);
         let mut found = match &self.sight {
             Sight::Direction(direction) => {

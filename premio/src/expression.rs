@@ -83,6 +83,12 @@ enum Node {
     Described(Box<Description>),
 }
 
+/// The solid of an expression, with its builder.
+struct BuiltExpression {
+    builder: Builder,
+    solid: SolidId,
+}
+
 /// A description that was read.
 struct Description {
     program: Program,
@@ -385,7 +391,8 @@ impl Expression {
         digits.filter_map(|d| d.program.digits).reduce(f64::max)
     }
 
-    fn build(&self) -> Result<(Builder, SolidId)> {
+    /// The solid of the expression, in a builder of its own.
+    fn build(&self) -> Result<BuiltExpression> {
         let root = self.0.as_ref().map_err(|error| *error)?;
         let mut builder = Builder::new();
         let mut built: HashMap<*const Node, SolidId> = HashMap::new();
@@ -406,7 +413,10 @@ impl Expression {
             };
             built.insert(Arc::as_ptr(node), last);
         }
-        Ok((builder, last))
+        Ok(BuiltExpression {
+            builder,
+            solid: last,
+        })
     }
 
     /// The tree of set operations, with every motion at its leaves.
@@ -428,8 +438,8 @@ impl Expression {
             // The error has the place in the text.
             return Ok(d.program.tree(&d.name, d.record.text.as_bytes())?);
         }
-        let (builder, part) = self.build()?;
-        Ok(builder.finish(part)?)
+        let BuiltExpression { builder, solid } = self.build()?;
+        Ok(builder.finish(solid)?)
     }
 
     /// The exact boundary, with the default options.
@@ -531,8 +541,8 @@ impl Expression {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn to_description(&self, format: Format) -> Result<String> {
-        let (builder, part) = self.build()?;
-        Ok(writer::write(&builder, part, format)?)
+        let BuiltExpression { builder, solid } = self.build()?;
+        Ok(writer::write(&builder, solid, format)?)
     }
 
     /// Writes the expression as a description, in the language that the file's ending names.

@@ -11,7 +11,7 @@ use premio_matching::camera::{CameraFile, Pinhole};
 use premio_matching::image::{DownsampledImage, ImageFeatures, detector, downsampled};
 use premio_matching::matcher::Matcher;
 use premio_matching::output::explain::explained;
-use premio_matching::output::report::{MatchReport, MatchSeconds, Pose};
+use premio_matching::output::report::{MatchReport, MatchSeconds, Pose, ReportNames};
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_matching::search::monitor::SearchStopped;
@@ -246,13 +246,10 @@ impl<'s> PartFinder<'s> {
     /// ```
     pub fn find(&self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
         let camera = camera.for_picture([picture.width, picture.height])?;
-        self.find_with(picture.clone(), camera, "", |matcher| {
-            Ok((matcher.find()?, None))
-        })
+        self.find_with(picture.clone(), camera, "", |matcher| matcher.find())
     }
 
-    /// Searches a picture with a function, which returns the search result, and for a sequence
-    /// whether the whole picture was searched.
+    /// Searches a picture with a function, which returns the search result.
     ///
     /// # Errors
     /// The search was cancelled.
@@ -267,7 +264,7 @@ impl<'s> PartFinder<'s> {
     /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
     /// let camera = camera.for_picture([64, 48])?;
     /// let finder = PartFinder::new(&solid)?;
-    /// let found = finder.find_with(nothing, camera, "a.png", |m| Ok((m.find()?, None)))?;
+    /// let found = finder.find_with(nothing, camera, "a.png", |matcher| matcher.find())?;
     /// assert_eq!(found.report().image, "a.png");
     /// # Ok::<(), premio::Error>(())
     /// ```
@@ -276,7 +273,7 @@ impl<'s> PartFinder<'s> {
         picture: Grey,
         camera: Pinhole,
         name: &str,
-        look: impl FnOnce(&Matcher<'_>) -> Result<(SearchResult, Option<bool>), SearchStopped>,
+        look: impl FnOnce(&Matcher<'_>) -> Result<SearchResult, SearchStopped>,
     ) -> Result<PictureMatch> {
         let started = Instant::now();
         let DownsampledImage {
@@ -294,14 +291,16 @@ impl<'s> PartFinder<'s> {
             options: &self.options,
             monitor: &self.progress,
         };
-        let (result, anew) = look(&matcher).map_err(|SearchStopped| Cancelled)?;
+        let result = look(&matcher).map_err(|SearchStopped| Cancelled)?;
         let seconds = MatchSeconds {
             features: detecting,
             matching: started.elapsed().as_secs_f64() - detecting,
         };
-        let names = [name, &self.name];
-        let mut report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
-        report.anew = anew;
+        let names = ReportNames {
+            image: name,
+            part: &self.name,
+        };
+        let report = MatchReport::new(&self.part, names, &features, &result, scale, seconds);
         Ok(PictureMatch {
             grey,
             features,
@@ -399,10 +398,13 @@ impl PartTracker<'_> {
         name: &str,
     ) -> Result<PictureMatch> {
         let last = self.last;
-        let found = self.finder.find_with(picture, camera, name, |matcher| {
+        let mut searched_anew = None;
+        let mut found = self.finder.find_with(picture, camera, name, |matcher| {
             let TrackResult { result, anew } = matcher.next(last.as_ref())?;
-            Ok((result, Some(anew)))
+            searched_anew = Some(anew);
+            Ok(result)
         })?;
+        found.report.anew = searched_anew;
         let accepted = found.best().filter(|m| m.is_accepted());
         self.last = accepted.map(|m: &PartMatch| m.pose);
         Ok(found)
@@ -566,7 +568,7 @@ impl PictureMatch {
     #[must_use]
     pub fn with_measures(mut self) -> Self {
         let best = self.result.best();
-        let straightness = self.features.straightness;
+        let straightness = self.report.straightness;
         self.report.measures = best.map(|found| ScoreMeasures::new(found, straightness));
         self
     }

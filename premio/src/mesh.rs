@@ -173,7 +173,7 @@ impl Solid {
 
     /// The triangles that are written to files.
     pub(crate) fn facets(&self, fineness: &Fineness) -> Result<Facets> {
-        let size = self.extent().1;
+        let size = self.extent().size;
         self.check_fineness(fineness, size)?;
         let accuracy = Accuracy {
             deviation: fineness.deviation.unwrap_or(mesh::DEVIATION * size),

@@ -38,6 +38,14 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Solid(Arc<SolidData>);
 
+/// The place of a solid.
+pub(crate) struct SolidExtent {
+    /// The middle of its box.
+    pub middle: Point3<f64>,
+    /// The diagonal of its box.
+    pub size: f64,
+}
+
 struct SolidData {
     tree: Tree,
     evaluation: Evaluation,
@@ -420,12 +428,18 @@ impl Solid {
     }
 
     /// The middle of the solid and its size; a point at the origin counts as of size one.
-    pub(crate) fn extent(&self) -> (Point3<f64>, f64) {
+    pub(crate) fn extent(&self) -> SolidExtent {
         match self.is_empty() {
-            true => (Point3::origin(), 1.0),
+            true => SolidExtent {
+                middle: Point3::origin(),
+                size: 1.0,
+            },
             false => {
                 let bounds = self.bounds();
-                (bounds.centre(), bounds.diagonal())
+                SolidExtent {
+                    middle: bounds.centre(),
+                    size: bounds.diagonal(),
+                }
             }
         }
     }

@@ -141,7 +141,7 @@ impl Solid {
             unit: settings.unit,
             accuracy: settings
                 .accuracy
-                .unwrap_or(step::ACCURACY * self.extent().1),
+                .unwrap_or(step::ACCURACY * self.extent().size),
             resolution: self.evaluation().f64_resolution(),
         };
         Ok(step::write(self.brep(), &options)?)

@@ -70,7 +70,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
     };
     let pool = pool(options.threads)?;
     let keep = usize::from(options.top).max(1);
-    let (scored, seen) = pool.install(|| scores(&predicates, keep, voice));
+    let TriedSetups { best: scored, seen } = pool.install(|| scores(&predicates, keep, voice));
     let tried = setups.len();
     let Some(first) = scored.first().cloned() else {
         let name = options.setups.display();
@@ -103,12 +103,16 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
 /// The number of setups that are scored before all but the best are dropped.
 const BATCH: usize = 256;
 
-/// The best of all setups, the best first, and the number in which the part is visible.
-fn scores(
-    predicates: &SetupScorer<'_>,
-    keep: usize,
-    voice: Reporter,
-) -> (Vec<ScoredPlacing>, usize) {
+/// The result of a search of all setups.
+struct TriedSetups {
+    /// The best of them, the best first.
+    best: Vec<ScoredPlacing>,
+    /// The number of setups in which the part is visible.
+    seen: usize,
+}
+
+/// Scores all setups.
+fn scores(predicates: &SetupScorer<'_>, keep: usize, voice: Reporter) -> TriedSetups {
     let count = predicates.setups.len();
     let bar = voice.progress(count as u64);
     let (mut best, mut seen) = (Vec::new(), 0);
@@ -135,7 +139,7 @@ fn scores(
         best.truncate(keep);
     }
     bar.finish_and_clear();
-    (best, seen)
+    TriedSetups { best, seen }
 }
 
 fn advised(

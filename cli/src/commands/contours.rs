@@ -110,12 +110,15 @@ fn on_sheet(
     let part = input::part(&options.description, session)?;
     let cameras = match &given {
         Some(Given::Choice(CameraChoice::Named(name))) => cameras(&[*name]),
-        Some(given) => vec![(None, given.camera()?)],
+        Some(given) => vec![SheetCamera {
+            view: None,
+            camera: given.camera()?,
+        }],
         None => cameras(&requested.views),
     };
     let bar = session.voice.progress(cameras.len() as u64);
     let mut views = Vec::new();
-    for (view, camera) in cameras {
+    for SheetCamera { view, camera } in cameras {
         views.push(SheetView {
             view,
             drawing: drawing(&seen(&part, &camera, given.as_ref())?, options),
@@ -154,7 +157,7 @@ impl<'a> Given<'a> {
     fn read(choice: CameraChoice<'a>, session: Session) -> Result<Self, CliError> {
         match choice {
             CameraChoice::File(path) => {
-                let (camera, text) = input::camera_of_file(path, session)?;
+                let input::CameraText { camera, text } = input::camera_of_file(path, session)?;
                 Ok(Self::File { path, text, camera })
             }
             choice => Ok(Self::Choice(choice)),
@@ -203,13 +206,22 @@ impl<'a> Given<'a> {
     }
 }
 
+/// The camera of a view on a sheet.
+struct SheetCamera {
+    /// The view, if it is a standard one.
+    view: Option<StandardView>,
+    camera: Camera,
+}
+
 /// The cameras of views, each once.
-fn cameras(names: &[ViewName]) -> Vec<(Option<StandardView>, Camera)> {
-    let mut cameras: Vec<(Option<StandardView>, Camera)> = Vec::new();
+fn cameras(names: &[ViewName]) -> Vec<SheetCamera> {
+    let mut cameras: Vec<SheetCamera> = Vec::new();
     for &name in names {
-        let view = StandardView::from(name);
-        if !cameras.iter().any(|(known, _)| *known == Some(view)) {
-            cameras.push((Some(view), Camera::standard(view)));
+        let standard = StandardView::from(name);
+        let view = Some(standard);
+        if !cameras.iter().any(|known| known.view == view) {
+            let camera = Camera::standard(standard);
+            cameras.push(SheetCamera { view, camera });
         }
     }
     cameras

@@ -74,25 +74,23 @@ impl From<ExportFormat> for SolidFormat {
 fn refuse_unused_options(options: &ExportOptions, format: ExportFormat) -> Result<(), CliError> {
     use ExportFormat::{Glb, Obj, Step, Stl, ThreeMf};
     let meshes: &[ExportFormat] = &[Stl, Obj, Glb, ThreeMf];
-    let given: [(&str, bool, &[ExportFormat]); 6] = [
-        ("accuracy", options.accuracy.is_some(), &[Step]),
-        ("protocol", options.protocol.is_some(), &[Step]),
-        ("deviation", options.deviation.is_some(), meshes),
-        ("angle", options.angle.is_some(), meshes),
-        ("unit", options.unit.is_some(), &[Step, Glb, ThreeMf]),
-        ("name", options.name.is_some(), &[Step, Obj, Glb, ThreeMf]),
-    ];
-    for (option, is_given, formats) in given {
-        if is_given && !formats.contains(&format) {
-            let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
-            let formats = formats.join(", ");
-            return Err(CliError::input(format!(
-                "`--{option}` does not apply to `--format {}`, only to {formats}",
-                format.name()
-            )));
+    let check = |option: &str, is_given: bool, formats: &[ExportFormat]| {
+        if !is_given || formats.contains(&format) {
+            return Ok(());
         }
-    }
-    Ok(())
+        let formats: Vec<&str> = formats.iter().map(|f| f.name()).collect();
+        let formats = formats.join(", ");
+        Err(CliError::input(format!(
+            "`--{option}` does not apply to `--format {}`, only to {formats}",
+            format.name()
+        )))
+    };
+    check("accuracy", options.accuracy.is_some(), &[Step])?;
+    check("protocol", options.protocol.is_some(), &[Step])?;
+    check("deviation", options.deviation.is_some(), meshes)?;
+    check("angle", options.angle.is_some(), meshes)?;
+    check("unit", options.unit.is_some(), &[Step, Glb, ThreeMf])?;
+    check("name", options.name.is_some(), &[Step, Obj, Glb, ThreeMf])
 }
 
 /// Notes how edges of more than two faces are written.

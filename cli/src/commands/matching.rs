@@ -12,7 +12,7 @@ use premio::{
     CancelToken, DetectabilityPrior, Detector, Format, Grey, PartFinder, PictureMatch, Pinhole,
     Progress, SearchOptions, Strategy, default_detector,
 };
-use premio_matching::output::report::BOP;
+use premio_matching::output::report::{BOP, BopIds};
 use premio_predict::model::file::ModelFile;
 use premio_predict::model::record::Record;
 use std::fmt::Write;
@@ -35,7 +35,7 @@ pub fn find(options: &MatchOptions, session: Session) -> Result<(), CliError> {
     let stop = CancelToken::from(stop()?);
     let finder = sought.finder(&options.sought, &stop)?;
     let look = |picture: Grey, camera: Pinhole, name: &str| {
-        let found = finder.find_with(picture, camera, name, |m| Ok((m.find()?, None)))?;
+        let found = finder.find_with(picture, camera, name, |matcher| matcher.find())?;
         Ok(match options.explain {
             true => found.with_measures(),
             false => found,
@@ -182,7 +182,12 @@ fn each(
         }
         let [scene, object] = options.ids;
         let image = numbered(path).unwrap_or(number);
-        if let Some(line) = report.bop([scene, image, object]) {
+        let ids = BopIds {
+            scene,
+            image,
+            object,
+        };
+        if let Some(line) = report.bop(ids) {
             let _ = writeln!(poses, "{line}");
         }
         let json = match options.images.len() {

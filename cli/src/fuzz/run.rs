@@ -88,7 +88,7 @@ fn try_all<E: Examine>(
         state.plan.trees().saturating_sub(state.done())
     };
     let work = |examiner: &mut E| -> Result<bool, FuzzError> {
-        let Some((number, item)) = take(shared, &next) else {
+        let Some(NumberedItem { number, item }) = take(shared, &next) else {
             return Ok(false);
         };
         let model = item.profile.model(item.seed);
@@ -109,14 +109,20 @@ fn try_all<E: Examine>(
     dispatch(shared, threads, make, &work, tell)
 }
 
+/// A tree of a run, and its number.
+struct NumberedItem {
+    number: u64,
+    item: Item,
+}
+
 /// The next tree that is not finished.
-fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<(u64, Item)> {
+fn take(shared: Shared<'_>, next: &AtomicU64) -> Option<NumberedItem> {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
         let state = shared.state();
         let item = state.plan.item(number)?;
         if !state.is_done(number) {
-            return Some((number, item));
+            return Some(NumberedItem { number, item });
         }
     }
 }
@@ -213,19 +219,33 @@ fn until_done<E>(
 /// Saves the state at intervals, which are longer the longer a save takes.
 #[derive(Default)]
 struct Saver {
-    last: Option<(Instant, Duration)>,
+    last: Option<Save>,
+}
+
+/// A save of the state.
+#[derive(Clone, Copy)]
+struct Save {
+    ended: Instant,
+    /// How long it took.
+    took: Duration,
 }
 
 impl Saver {
     fn is_due(&mut self) -> bool {
-        let (last, took) = *self.last.get_or_insert((Instant::now(), Duration::ZERO));
-        last.elapsed() > SAVE.max(SAVING * took)
+        let last = self.last.get_or_insert_with(|| Save {
+            ended: Instant::now(),
+            took: Duration::ZERO,
+        });
+        last.ended.elapsed() > SAVE.max(SAVING * last.took)
     }
 
     fn save(&mut self, state: &RunState, path: &Path) -> Result<(), FuzzError> {
         let started = Instant::now();
         let saved = state.save(path);
-        self.last = Some((Instant::now(), started.elapsed()));
+        self.last = Some(Save {
+            ended: Instant::now(),
+            took: started.elapsed(),
+        });
         saved
     }
 }

@@ -1,9 +1,9 @@
 //! The arrangement: the curves in which carriers intersect, and the points at which they are split.
 
 use super::close_calls::Unlisted;
+use super::distinct_surfaces::CarrierSide;
 use super::vertices::VertexCandidate;
-use premio_kernel::brep::topology::Sense;
-use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::geometry::bounds::{Aabb, CurvePiece};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::float::Float;
@@ -36,7 +36,7 @@ pub(super) struct IntersectionCurve<N: Float = f64> {
     /// Its bounding box.
     pub bounds: Aabb,
     /// Its smooth pieces with their boxes, in order.
-    pub parts: Vec<([N; 2], Aabb)>,
+    pub parts: Vec<CurvePiece<N>>,
     /// The points at which it is split, in order.
     pub cuts: Vec<Cut<N>>,
 }
@@ -67,8 +67,8 @@ pub(super) type SolidTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
 pub(super) struct Arrangement<N: Float = f64> {
     /// The distinct surfaces.
     pub carriers: Vec<Surface<N>>,
-    /// For each half space of each solid: its carrier and the sense relative to it.
-    pub sides: Vec<Vec<(usize, Sense)>>,
+    /// For each half space of each solid: its carrier.
+    pub sides: Vec<Vec<CarrierSide>>,
     /// The curves.
     pub meetings: Vec<IntersectionCurve<N>>,
     /// The corners.

@@ -5,7 +5,7 @@
 //! it.
 
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, SolidTree, common};
-use super::close_calls::Between;
+use super::close_calls::{Between, Unlisted};
 use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
@@ -17,20 +17,28 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::intersect::{Branch, intersect};
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface_pair::Carrier;
+use premio_kernel::geometry::trace::BranchPosition;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::{BTreeMap, HashSet};
 
-/// Builds the arrangement, with at most `most` curves and cuts, and the sources of its carriers.
+/// An arrangement that was built.
+pub(super) struct Arranged<'t, N: Float = f64> {
+    pub arrangement: Arrangement<N>,
+    /// The source of each carrier.
+    pub sources: Vec<Source<'t>>,
+}
+
+/// Builds the arrangement, with at most `most` curves and cuts.
 pub(super) fn arrange<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
     extent: &RegionOfInterest<N>,
     predicates: &Predicates,
     most: usize,
-) -> Result<(Arrangement<N>, Vec<Source<'t>>), EvaluationError> {
+) -> Result<Arranged<'t, N>, EvaluationError> {
     let Merged {
         carriers,
         sources,
@@ -73,7 +81,10 @@ pub(super) fn arrange<'t, N: Float>(
     for m in &mut found.meetings {
         m.order_cuts();
     }
-    Ok((found, sources))
+    Ok(Arranged {
+        arrangement: found,
+        sources,
+    })
 }
 
 /// The tree of the boxes of some solids, enlarged by `reach`.
@@ -97,7 +108,7 @@ fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
     }
 }
 
-type Pairs = BTreeMap<(usize, usize), Vec<Aabb>>;
+type Pairs = BTreeMap<[usize; 2], Vec<Aabb>>;
 
 impl<N: Float> Arrangement<N> {
     /// The pairs of carriers whose faces' boxes intersect, with the intersections of these boxes.
@@ -145,12 +156,12 @@ impl<N: Float> Arrangement<N> {
         for (k, a) in s.sides.iter().enumerate() {
             let box_a = a.bounds.grown(reach);
             for (l, b) in o.sides.iter().enumerate() {
-                let (c, d) = (self.sides[i][k].0, self.sides[j][l].0);
+                let (c, d) = (self.sides[i][k].carrier, self.sides[j][l].carrier);
                 if c == d || (i == j && k >= l) {
                     continue;
                 }
                 if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
-                    pairs.entry((c.min(d), c.max(d))).or_default().push(shared);
+                    pairs.entry([c.min(d), c.max(d)]).or_default().push(shared);
                     added += 1;
                 }
             }
@@ -160,7 +171,7 @@ impl<N: Float> Arrangement<N> {
 
     fn add_pair(
         &mut self,
-        (a, b): (usize, usize),
+        [a, b]: [usize; 2],
         supports: &[Aabb],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
@@ -173,7 +184,10 @@ impl<N: Float> Arrangement<N> {
         let found = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
         for call in predicates.take(own) {
             match call.local {
-                true => self.calls.push((call, Between::Carriers([a, b]))),
+                true => self.calls.push(Unlisted {
+                    call,
+                    between: Between::Carriers([a, b]),
+                }),
                 false => predicates.list(call),
             }
         }
@@ -186,7 +200,7 @@ impl<N: Float> Arrangement<N> {
                 continue;
             }
             let vertex = corners.at(&node.point, &[a, b], predicates);
-            for &(branch, t) in &node.on {
+            for &BranchPosition { branch, t } in &node.on {
                 for &m in &kept[branch] {
                     let [lo, hi] = self.meetings[m].range;
                     let resolution = predicates.resolution::<N>();
@@ -216,7 +230,7 @@ impl<N: Float> Arrangement<N> {
         let mut kept = Vec::new();
         for range in ranges {
             let parts = pieces(&branch.curve, range);
-            let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
+            let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
             if !supports
                 .iter()
                 .any(|s| common(s, &b3.grown(predicates.resolution::<N>())).is_some())

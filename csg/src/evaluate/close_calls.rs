@@ -8,12 +8,16 @@ pub(super) enum Between {
     /// Two corners.
     Corners([usize; 2]),
     /// A corner and a point, defined by these carriers, that was merged with it.
-    CornerAndPoint(usize, Vec<usize>),
+    CornerAndPoint { corner: usize, carriers: Vec<usize> },
     /// A curve, by its index, and a carrier.
-    Curve(usize, usize),
+    Curve { meeting: usize, carrier: usize },
     /// Two carriers.
     Carriers([usize; 2]),
 }
 
 /// A close call, not yet listed.
-pub(super) type Unlisted = (CloseCall, Between);
+#[derive(Clone, Debug)]
+pub(super) struct Unlisted {
+    pub call: CloseCall,
+    pub between: Between,
+}

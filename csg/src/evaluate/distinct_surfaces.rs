@@ -32,8 +32,36 @@ pub(super) struct Merged<'t, N: Float = f64> {
     pub carriers: Vec<Surface<N>>,
     /// The source of each carrier.
     pub sources: Vec<Source<'t>>,
-    /// For each half space of each solid: its carrier, and the sense relative to it.
-    pub sides: Vec<Vec<(usize, Sense)>>,
+    /// For each half space of each solid: its carrier.
+    pub sides: Vec<Vec<CarrierSide>>,
+}
+
+/// The carrier of a half space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct CarrierSide {
+    /// The index of the carrier.
+    pub carrier: usize,
+    /// The sense of the half space's surface relative to it.
+    pub sense: Sense,
+}
+
+impl CarrierSide {
+    /// The side of a carrier that has the half space's own surface.
+    fn own(carrier: usize) -> Self {
+        let sense = Sense::Along;
+        Self { carrier, sense }
+    }
+}
+
+/// A half space, with the place by which it is compared.
+struct PlacedSide<'s, N: Float = f64> {
+    /// The coordinate of the surface's point closest to the extent's centre.
+    x: N,
+    /// The index of the solid.
+    solid: usize,
+    /// The index of the half space in the solid.
+    side: usize,
+    half_space: &'s HalfSpace<N>,
 }
 
 /// Merges equal surfaces, and assigns a carrier to each half space.
@@ -55,41 +83,56 @@ pub(super) fn merge<'t, N: Float>(
             Surface::Cone(_) | Surface::Sphere(_) | Surface::Torus(_) => f.origin,
         }
     };
-    let mut list: Vec<(N, usize, usize, &HalfSpace<N>)> = Vec::new();
-    for (i, s) in solids.all.iter().enumerate() {
-        for (k, side) in s.sides.iter().enumerate() {
-            list.push((foot(&side.surface).x, i, k, side));
+    let mut list: Vec<PlacedSide<'_, N>> = Vec::new();
+    for (solid, s) in solids.all.iter().enumerate() {
+        for (side, half_space) in s.sides.iter().enumerate() {
+            list.push(PlacedSide {
+                x: foot(&half_space.surface).x,
+                solid,
+                side,
+                half_space,
+            });
         }
     }
-    list.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    list.sort_by(|a, b| {
+        let indices = [a.solid, a.side].cmp(&[b.solid, b.side]);
+        a.x.total_cmp(&b.x).then(indices)
+    });
     let window = N::from_f64(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
-    let mut sides: Vec<Vec<(usize, Sense)>> = solids
+    let mut sides: Vec<Vec<CarrierSide>> = solids
         .all
         .iter()
-        .map(|s| vec![(usize::MAX, Sense::Along); s.sides.len()])
+        .map(|s| vec![CarrierSide::own(usize::MAX); s.sides.len()])
         .collect();
     let mut carriers: Vec<Surface<N>> = Vec::new();
     let mut sources: Vec<Source<'t>> = Vec::new();
     // The carriers that may still equal a later surface, by the coordinate of that point.
     let mut recent: Vec<(N, usize)> = Vec::new();
-    for (x, i, k, side) in list {
+    for placed_side in list {
+        let PlacedSide {
+            x,
+            solid,
+            side,
+            half_space,
+        } = placed_side;
         recent.retain(|(y, _)| (x - *y).is_at_most(window));
         let source = Source {
-            placed: placed[i],
-            side: k,
+            placed: placed[solid],
+            side,
         };
         let exact = || source.exact();
-        let known = recent.iter().find_map(|&(_, c)| {
-            let exact_known = || sources[c].exact();
-            let a = Carrier::rounded(&carriers[c], &exact_known);
-            let b = Carrier::rounded(&side.surface, &exact);
-            coincidence(a, b, extent, predicates).map(|sense| (c, sense))
+        let known = recent.iter().find_map(|&(_, carrier)| {
+            let exact_known = || sources[carrier].exact();
+            let a = Carrier::rounded(&carriers[carrier], &exact_known);
+            let b = Carrier::rounded(&half_space.surface, &exact);
+            let sense = coincidence(a, b, extent, predicates)?;
+            Some(CarrierSide { carrier, sense })
         });
-        sides[i][k] = known.unwrap_or_else(|| {
-            carriers.push(side.surface);
+        sides[solid][side] = known.unwrap_or_else(|| {
+            carriers.push(half_space.surface);
             sources.push(source);
             recent.push((x, carriers.len() - 1));
-            (carriers.len() - 1, Sense::Along)
+            CarrierSide::own(carriers.len() - 1)
         });
     }
     Merged {

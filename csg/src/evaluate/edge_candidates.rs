@@ -1,7 +1,7 @@
 //! Edge candidates: the pieces of curves between consecutive vertices. Each occurs once, however
 //! many pairs of carriers gave its curve.
 
-use super::arrangement::{Arrangement, IntersectionCurve};
+use super::arrangement::{Arrangement, Cut, IntersectionCurve};
 use super::vertices::VertexCandidate;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
@@ -26,9 +26,30 @@ pub(super) struct EdgeCandidate<N: Float = f64> {
     pub tangent: Vec<[usize; 2]>,
 }
 
-/// A key shared by copies of a piece: the canonical index of a closed curve, or the corners at both
-/// ends.
-type Name = (Option<usize>, Option<[usize; 2]>);
+/// A key shared by copies of a piece.
+#[derive(PartialEq, Eq, Hash)]
+enum Name {
+    /// The canonical index of a closed curve.
+    Closed(usize),
+    /// The corners at both ends, in increasing order.
+    Open([usize; 2]),
+}
+
+impl Name {
+    fn new(home: usize, ends: Option<[usize; 2]>) -> Self {
+        match ends {
+            Some([a, b]) => Self::Open([a.min(b), a.max(b)]),
+            None => Self::Closed(home),
+        }
+    }
+}
+
+/// The part of a curve between two consecutive cuts.
+struct Span<N: Float = f64> {
+    range: [N; 2],
+    /// The corners at both ends; none for a closed curve without cuts.
+    ends: Option<[usize; 2]>,
+}
 
 pub(super) fn pieces<N: Float>(
     arrangement: &Arrangement<N>,
@@ -40,7 +61,7 @@ pub(super) fn pieces<N: Float>(
     // the curves coincide only within the resolution, two carriers.
     let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
     for (index, m) in arrangement.meetings.iter().enumerate() {
-        for (range, ends) in spans(m) {
+        for Span { range, ends } in spans(m) {
             let piece = EdgeCandidate {
                 meeting: index,
                 range,
@@ -49,10 +70,8 @@ pub(super) fn pieces<N: Float>(
                 tangent: m.tangent.clone(),
             };
             if piece.carriers.len() > 2 {
-                let name = ends.map(|[a, b]| [a.min(b), a.max(b)]);
                 let home = homes[index];
-                let list = known.entry((name.is_none().then_some(home), name));
-                let list = list.or_default();
+                let list = known.entry(Name::new(home, ends)).or_default();
                 let middle = m.curve.point(N::HALF * (range[0] + range[1]));
                 let same = list.iter().copied().find(|&i| {
                     let other: &EdgeCandidate<N> = &all[i];
@@ -218,32 +237,33 @@ impl<N: Float> EdgeCandidate<N> {
     }
 }
 
-/// The ranges between consecutive cuts, with the corners at their ends. The parts of an open curve
-/// before the first and after the last cut are outside one of the faces' boxes.
-fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<([N; 2], Option<[usize; 2]>)> {
+/// The parts between consecutive cuts. The parts of an open curve before the first and after the
+/// last cut are outside one of the faces' boxes.
+fn spans<N: Float>(m: &IntersectionCurve<N>) -> Vec<Span<N>> {
     if m.cuts.is_empty() {
+        let (range, ends) = (m.range, None);
         return if m.closed {
-            vec![(m.range, None)]
+            vec![Span { range, ends }]
         } else {
             Vec::new()
         };
     }
-    let mut spans: Vec<_> = m
-        .cuts
-        .windows(2)
-        .map(|c| ([c[0].t, c[1].t], Some([c[0].vertex, c[1].vertex])))
-        .collect();
+    let between = |c: &[Cut<N>]| Span {
+        range: [c[0].t, c[1].t],
+        ends: Some([c[0].vertex, c[1].vertex]),
+    };
+    let mut spans: Vec<Span<N>> = m.cuts.windows(2).map(between).collect();
     if m.closed {
         let (first, last) = (m.cuts[0], m.cuts[m.cuts.len() - 1]);
         let period = m.range[1] - m.range[0];
-        spans.push((
-            [last.t, first.t + period],
-            Some([last.vertex, first.vertex]),
-        ));
+        spans.push(Span {
+            range: [last.t, first.t + period],
+            ends: Some([last.vertex, first.vertex]),
+        });
     }
     let length = |r: &[N; 2]| r[1] - r[0];
     let short = length(&m.range) * N::ROUNDING;
-    spans.retain(|(r, _)| length(r).is_beyond(short));
+    spans.retain(|span| length(&span.range).is_beyond(short));
     spans
 }
 

@@ -19,8 +19,11 @@ use super::relevance::CloseCallFilter;
 use super::vertices::VertexCandidate;
 use crate::tree::NodeId;
 use nalgebra::Point3;
-use premio_kernel::brep::boundary_input::{BoundaryInput, EdgeInput, FaceUse, VertexInput};
+use premio_kernel::brep::boundary_input::{
+    BoundaryInput, EdgeInput, FaceUse, SurfaceSide, VertexInput,
+};
 use premio_kernel::brep::topology::Sense;
+use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
@@ -30,9 +33,23 @@ use std::collections::HashMap;
 /// A primitive close to a piece, with the conditions under which it contains a sector.
 struct Near {
     leaf: NodeId,
-    /// The carriers of the piece (by index in the piece) whose side is still open, and the side on
-    /// which the primitive lies.
-    open: Vec<(usize, Sense)>,
+    /// The carriers of the piece whose side is still open.
+    open: Vec<OpenSide>,
+}
+
+/// A carrier through a piece, and the side of it on which a primitive lies.
+#[derive(Clone, Copy)]
+struct OpenSide {
+    /// The index of the carrier in the piece.
+    carrier: usize,
+    side: Sense,
+}
+
+/// A candidate that is an edge, with the faces around it.
+#[derive(Clone)]
+struct ClassifiedEdge<N: Float = f64> {
+    piece: EdgeCandidate<N>,
+    face_uses: Vec<FaceUse>,
 }
 
 /// The neighbourhood of a point of a piece.
@@ -82,11 +99,11 @@ pub(super) fn boundary<N: Float>(
         membership,
         predicates,
     };
-    let mut edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)> = Vec::new();
+    let mut edges: Vec<ClassifiedEdge<N>> = Vec::new();
     for piece in pieces {
         let face_uses = classifier.face_uses(&piece)?;
         if !face_uses.is_empty() {
-            edges.push((piece, face_uses));
+            edges.push(ClassifiedEdge { piece, face_uses });
         }
     }
     let joined = join(edges, arrangement);
@@ -167,9 +184,10 @@ impl<N: Float> Classifier<'_, N> {
             // The least distance from all other sides, and the greatest signed distance outside
             // one.
             let (mut inside, mut outside) = (N::INFINITY, N::NEG_INFINITY);
-            for (side, &(c, sense)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
-                if let Ok(at) = carriers.binary_search(&c) {
-                    open.push((at, sense));
+            for (side, own) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
+                if let Ok(carrier) = carriers.binary_search(&own.carrier) {
+                    let side = own.sense;
+                    open.push(OpenSide { carrier, side });
                     continue;
                 }
                 let distance = side.surface.distance(p);
@@ -192,7 +210,7 @@ impl<N: Float> Classifier<'_, N> {
 
     fn wings_at(&self, spot: &Spot<'_, N>, near: &[Near]) -> Result<Vec<FaceUse>, EvaluationError> {
         let piece = spot.piece;
-        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.0 == at));
+        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.carrier == at));
         let sheets = spot.sheets(has_face)?;
         let n = sheets.len();
         // The sides before the first sheet: opposite to those beyond the first sheet of each
@@ -204,31 +222,31 @@ impl<N: Float> Classifier<'_, N> {
         let inside = |sides: &[Sense]| {
             let held: Vec<NodeId> = near
                 .iter()
-                .filter(|s| s.open.iter().all(|&(c, sense)| sides[c] == sense))
+                .filter(|s| s.open.iter().all(|o| sides[o.carrier] == o.side))
                 .map(|s| s.leaf)
                 .collect();
             !held.is_empty() && self.membership.contains(&held)
         };
         let mut before = inside(&sides);
-        let mut changes: Vec<(usize, bool)> = Vec::new();
-        for (i, s) in sheets.iter().enumerate() {
+        let mut changes: Vec<MaterialChange> = Vec::new();
+        for (sheet, s) in sheets.iter().enumerate() {
             sides[s.carrier] = s.beyond;
             let after = inside(&sides);
             if after != before {
-                changes.push((i, after));
+                changes.push(MaterialChange { sheet, after });
             }
             before = after;
         }
-        if let [(i, _), (j, _)] = changes[..]
-            && sheets[i].carrier == sheets[j].carrier
+        if let [a, b] = changes[..]
+            && sheets[a.sheet].carrier == sheets[b.sheet].carrier
         {
             return Ok(Vec::new());
         }
-        let first = changes.iter().position(|c| c.1).unwrap_or(0);
+        let first = changes.iter().position(|c| c.after).unwrap_or(0);
         changes.rotate_left(first);
         debug_assert!(n >= changes.len());
-        let face_use = |&(i, after): &(usize, bool)| {
-            let s = &sheets[i];
+        let face_use = |&MaterialChange { sheet, after }: &MaterialChange| {
+            let s = &sheets[sheet];
             // There is material beyond: the outward normal is -l, and the face lies to the right of
             // T.
             let outward = if (s.beyond == Sense::Along) == after {
@@ -265,7 +283,7 @@ impl<N: Float> Classifier<'_, N> {
     }
 
     /// The closed carriers without any edge that are faces as a whole.
-    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<(usize, Sense)>, EvaluationError> {
+    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<SurfaceSide>, EvaluationError> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
         for face_use in edges.iter().flat_map(|e| &e.face_uses) {
             bounded[face_use.surface] = true;
@@ -275,8 +293,11 @@ impl<N: Float> Classifier<'_, N> {
             if bounded[c] || !matches!(surface, Surface::Sphere(_) | Surface::Torus(_)) {
                 continue;
             }
-            if let Some(sense) = self.whole(c, surface)? {
-                whole.push((c, sense));
+            if let Some(outward) = self.whole(c, surface)? {
+                whole.push(SurfaceSide {
+                    surface: c,
+                    outward,
+                });
             }
         }
         Ok(whole)
@@ -316,7 +337,7 @@ impl<N: Float> Classifier<'_, N> {
         }
         let held = |side: Sense| {
             let near = look.near.iter();
-            let within = near.filter(|s| s.open.iter().all(|o| o.1 == side));
+            let within = near.filter(|s| s.open.iter().all(|o| o.side == side));
             let held: Vec<NodeId> = within.map(|s| s.leaf).collect();
             !held.is_empty() && self.membership.contains(&held)
         };
@@ -326,6 +347,15 @@ impl<N: Float> Classifier<'_, N> {
             _ => None,
         })
     }
+}
+
+/// A sheet at which material begins or ends.
+#[derive(Clone, Copy)]
+struct MaterialChange {
+    /// The index of the sheet.
+    sheet: usize,
+    /// Whether there is material beyond it.
+    after: bool,
 }
 
 /// An edge made of consecutive pieces of one curve.
@@ -339,75 +369,100 @@ struct Joined<N: Float = f64> {
 }
 
 /// Joins the pieces of one curve at corners where nothing else ends and the faces do not change.
-fn join<N: Float>(
-    edges: Vec<(EdgeCandidate<N>, Vec<FaceUse>)>,
-    arrangement: &Arrangement<N>,
-) -> Vec<Joined<N>> {
-    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (i, (piece, _)) in edges.iter().enumerate() {
-        for v in piece.ends.iter().flatten() {
-            at.entry(*v).or_default().push(i);
-        }
-    }
-    // The next piece along the curve, if the corner in between is no vertex.
-    let mut next: Vec<Option<usize>> = vec![None; edges.len()];
+fn join<N: Float>(edges: Vec<ClassifiedEdge<N>>, arrangement: &Arrangement<N>) -> Vec<Joined<N>> {
+    let next = successors(&edges, arrangement);
     let mut has_previous = vec![false; edges.len()];
-    for (i, (piece, face_uses)) in edges.iter().enumerate() {
-        let Some([_, end]) = piece.ends else { continue };
-        let list = &at[&end];
-        let [a, b] = list[..] else { continue };
-        let j = if a == i { b } else { a };
-        let (other, same) = &edges[j];
-        let curve = &arrangement.meetings[piece.meeting].curve;
-        let follows = other.meeting == piece.meeting
-            && other.ends.is_some_and(|e| e[0] == end)
-            && meets_at(curve.cycle(), piece.range[1], other.range[0])
-            && !curve.turns_back(piece.range[1])
-            && same_wings(face_uses, same);
-        if follows {
-            next[i] = Some(j);
-            has_previous[j] = true;
-        }
+    for &j in next.iter().flatten() {
+        has_previous[j] = true;
     }
     let mut done = vec![false; edges.len()];
-    let mut joined = Vec::new();
     let starts = (0..edges.len())
         .filter(|&i| !has_previous[i])
         .chain(0..edges.len());
+    let mut joined = Vec::new();
     for start in starts {
-        if done[start] {
-            continue;
+        if !done[start] {
+            joined.push(run_from(start, &edges, &next, arrangement, &mut done));
         }
-        done[start] = true;
-        let (mut piece, face_uses) = edges[start].clone();
-        let mut passes = Vec::new();
-        let mut last = start;
-        while let Some(j) = next[last] {
-            passes.extend(edges[last].0.ends.map(|e| e[1]));
-            if j == start {
-                piece.ends = None;
-                break;
-            }
-            done[j] = true;
-            let curve = &arrangement.meetings[piece.meeting].curve;
-            piece.range[1] = run_on(curve.cycle(), piece.range[1], edges[j].0.range);
-            if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].0.ends) {
-                ends[1] = e[1];
-            }
-            last = j;
-        }
-        if piece.ends.is_none()
-            && let Some(cycle) = arrangement.meetings[piece.meeting].curve.cycle()
-        {
-            piece.range[1] = piece.range[0] + cycle;
-        }
-        joined.push(Joined {
-            piece,
-            face_uses,
-            passes,
-        });
     }
     joined
+}
+
+/// By piece: the next one along the curve, if the corner in between is no vertex.
+fn successors<N: Float>(
+    edges: &[ClassifiedEdge<N>],
+    arrangement: &Arrangement<N>,
+) -> Vec<Option<usize>> {
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (i, edge) in edges.iter().enumerate() {
+        for v in edge.piece.ends.iter().flatten() {
+            at.entry(*v).or_default().push(i);
+        }
+    }
+    let next = edges.iter().enumerate().map(|(i, edge)| {
+        let [_, end] = edge.piece.ends?;
+        let [a, b] = at[&end][..] else { return None };
+        let j = if a == i { b } else { a };
+        let curve = &arrangement.meetings[edge.piece.meeting].curve;
+        edge.is_followed_by(&edges[j], curve).then_some(j)
+    });
+    next.collect()
+}
+
+impl<N: Float> ClassifiedEdge<N> {
+    /// Whether another piece of the same curve starts at the end of this one, with the same faces.
+    fn is_followed_by(&self, other: &Self, curve: &Curve<N>) -> bool {
+        let [from, to] = [&self.piece, &other.piece];
+        let (Some([_, end]), Some([start, _])) = (from.ends, to.ends) else {
+            return false;
+        };
+        to.meeting == from.meeting
+            && start == end
+            && meets_at(curve.cycle(), from.range[1], to.range[0])
+            && !curve.turns_back(from.range[1])
+            && same_wings(&self.face_uses, &other.face_uses)
+    }
+}
+
+/// The edge that starts with a piece; its pieces are marked as done.
+fn run_from<N: Float>(
+    start: usize,
+    edges: &[ClassifiedEdge<N>],
+    next: &[Option<usize>],
+    arrangement: &Arrangement<N>,
+    done: &mut [bool],
+) -> Joined<N> {
+    done[start] = true;
+    let ClassifiedEdge {
+        mut piece,
+        face_uses,
+    } = edges[start].clone();
+    let curve = &arrangement.meetings[piece.meeting].curve;
+    let mut passes = Vec::new();
+    let mut last = start;
+    while let Some(j) = next[last] {
+        passes.extend(edges[last].piece.ends.map(|e| e[1]));
+        if j == start {
+            piece.ends = None;
+            break;
+        }
+        done[j] = true;
+        piece.range[1] = run_on(curve.cycle(), piece.range[1], edges[j].piece.range);
+        if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].piece.ends) {
+            ends[1] = e[1];
+        }
+        last = j;
+    }
+    if piece.ends.is_none()
+        && let Some(cycle) = curve.cycle()
+    {
+        piece.range[1] = piece.range[0] + cycle;
+    }
+    Joined {
+        piece,
+        face_uses,
+        passes,
+    }
 }
 
 /// The end of a piece that starts where the previous one ends, counted on over the periods. A sum

@@ -73,8 +73,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
         for s in near {
             let solid = &self.solids.all[s.data];
             let mut inside = [true; 2];
-            for (side, (carrier, _)) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
-                let is_own = self.arrangement.carriers[*carrier] == *at.surface;
+            for (side, own) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
+                let is_own = self.arrangement.carriers[own.carrier] == *at.surface;
                 match self.adjacency(&side.surface, is_own, at) {
                     Adjacency::Clear(holds) => {
                         inside = [inside[0] && holds[0], inside[1] && holds[1]];
@@ -152,7 +152,7 @@ mod tests {
         let arranged = arrange(tree, &solids, &extent, &predicates, MAX_ENTITIES);
         let concern = CloseCallFilter {
             solids: &solids,
-            arrangement: &arranged.unwrap().0,
+            arrangement: &arranged.unwrap().arrangement,
             membership: &Membership::new(joined),
             predicates: &predicates,
         };

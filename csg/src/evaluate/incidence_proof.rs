@@ -57,7 +57,11 @@ pub(super) fn prove<N: Float>(
         let incidence = Incidence::new(&forms, carriers, &point, predicates);
         if !incidence.is_simple() {
             let reach = predicates.resolution::<N>() / N::from_f64(FINEST_RESOLUTION.sqrt());
-            incidence.settle("point on surfaces", None, (&point, reach), predicates)?;
+            let near = Neighbourhood {
+                place: &point,
+                reach,
+            };
+            incidence.settle("point on surfaces", None, near, predicates)?;
         }
     }
     for piece in pieces {
@@ -67,6 +71,13 @@ pub(super) fn prove<N: Float>(
         }
     }
     Ok(())
+}
+
+/// The neighbourhood of a place.
+struct Neighbourhood<'a, N: Float = f64> {
+    place: &'a Point3<N>,
+    /// The radius.
+    reach: N,
 }
 
 /// The polynomials that must vanish at a point close to a given place.
@@ -124,15 +135,16 @@ impl<'f> Incidence<'f> {
         self.levels.len() <= 3 && self.dependences.is_empty()
     }
 
-    /// Proves all incidences at the point close to a place, within `reach`. With `cut`, the point
-    /// is on that plane.
+    /// Proves all incidences at the point in a neighbourhood. With `cut`, the point is on that
+    /// plane.
     fn settle<N: Float>(
         &self,
         question: &'static str,
         cut: Option<&Polynomial>,
-        (place, reach): (&Point3<N>, N),
+        near: Neighbourhood<'_, N>,
         predicates: &Predicates,
     ) -> Result<(), EvaluationError> {
+        let Neighbourhood { place, reach } = near;
         let vanishing = || self.levels.iter().copied().chain(&self.dependences);
         let mut defining: Vec<Polynomial> = vanishing().chain(cut).cloned().collect();
         let mut point = None;
@@ -226,7 +238,10 @@ impl<'f, N: Float> Holding<'f, N> {
                 predicates.count_assumed(incidence.levels.len() as u64);
                 continue;
             };
-            let near = (&place, N::HALF * way);
+            let near = Neighbourhood {
+                place: &place,
+                reach: N::HALF * way,
+            };
             incidence.settle("curve on surfaces", Some(&cut), near, predicates)?;
         }
         Ok(())

@@ -7,8 +7,16 @@ use std::collections::{BTreeMap, BinaryHeap};
 /// The tree with links to the parents, so that a few leaves can be followed upwards.
 pub(super) struct Membership<'a> {
     tree: &'a Tree,
-    /// Each node's parent, and its index among the parent's children.
-    parents: Vec<Option<(NodeId, usize)>>,
+    /// By node: the link to its parent.
+    parents: Vec<Option<ParentLink>>,
+}
+
+/// The link from a node to its parent.
+#[derive(Clone, Copy)]
+struct ParentLink {
+    parent: NodeId,
+    /// The index of the node among the parent's children.
+    place: usize,
 }
 
 /// What is known of a node so far.
@@ -59,7 +67,10 @@ impl<'a> Membership<'a> {
         for (i, node) in tree.nodes().iter().enumerate() {
             if let TreeNode::Operation { children, .. } = node {
                 for (k, child) in children.iter().enumerate() {
-                    parents[child.index()] = Some((NodeId(i), k));
+                    parents[child.index()] = Some(ParentLink {
+                        parent: NodeId(i),
+                        place: k,
+                    });
                 }
             }
         }
@@ -74,7 +85,7 @@ impl<'a> Membership<'a> {
         let mut waiting: BinaryHeap<(NodeId, bool)> = BinaryHeap::new();
         for leaf in leaves {
             match self.parents[leaf.index()] {
-                Some((parent, place)) => waiting.push((parent, place == 0)),
+                Some(link) => waiting.push((link.parent, link.place == 0)),
                 None => return true,
             }
         }
@@ -87,7 +98,7 @@ impl<'a> Membership<'a> {
             // Continue upwards from there as long as no other node must be decided first.
             let mut ready = Some(count);
             while let Some(count) = ready.take().filter(|count| self.decide(count)) {
-                let Some((parent, place)) = self.parents[count.node.index()] else {
+                let Some(ParentLink { parent, place }) = self.parents[count.node.index()] else {
                     return true;
                 };
                 match waiting
@@ -127,7 +138,7 @@ impl<'a> Membership<'a> {
         let choices = self.choices(held, open);
         let decides = |leaf: &NodeId| {
             let mut node = *leaf;
-            while let Some((parent, place)) = self.parents[node.index()] {
+            while let Some(ParentLink { parent, place }) = self.parents[node.index()] {
                 let choice = choices.get(&parent);
                 if !choice.is_some_and(|c| self.follows(parent, place, c)) {
                     return false;
@@ -148,7 +159,7 @@ impl<'a> Membership<'a> {
         found.extend::<Vec<_>>(named(open, Hold::Open));
         loop {
             for (node, hold) in found.drain(..) {
-                let Some((parent, place)) = self.parents[node.index()] else {
+                let Some(ParentLink { parent, place }) = self.parents[node.index()] else {
                     continue;
                 };
                 let choice = waiting.entry(parent).or_default();

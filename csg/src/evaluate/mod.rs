@@ -47,6 +47,12 @@ mod vertices;
 
 pub use error::EvaluationError;
 
+use self::arrangement::Arrangement;
+use self::carrier_intersections::Arranged;
+use self::edge_candidates::EdgeCandidate;
+use self::halfspaces::HalfSpaceModel;
+use self::membership::Membership;
+use self::relevance::CloseCallFilter;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
@@ -127,7 +133,14 @@ enum Integrals {
     /// f64 values.
     Doubles(FaceIntegrals),
     /// Extended precision: the boundary before it was rounded.
-    Wide(Box<(Brep<F237>, FaceIntegrals<F237>)>),
+    Wide(Box<WideBoundary>),
+}
+
+/// A boundary in extended precision, and its integrals.
+#[derive(Debug)]
+struct WideBoundary {
+    brep: Brep<F237>,
+    measures: FaceIntegrals<F237>,
 }
 
 impl Evaluation {
@@ -155,7 +168,7 @@ impl Evaluation {
     pub fn mass(&self) -> Mass {
         *self.mass.get_or_init(|| match &self.integrals {
             Integrals::Doubles(measures) => measures.mass(&self.brep),
-            Integrals::Wide(wide) => wide.1.mass(&wide.0),
+            Integrals::Wide(wide) => wide.measures.mass(&wide.brep),
         })
     }
 
@@ -163,7 +176,7 @@ impl Evaluation {
     pub fn tight_bounds(&self) -> Aabb {
         match &self.integrals {
             Integrals::Doubles(_) => bounds(&self.brep),
-            Integrals::Wide(wide) => bounds(&wide.0),
+            Integrals::Wide(wide) => bounds(&wide.brep),
         }
     }
 
@@ -171,7 +184,10 @@ impl Evaluation {
     pub fn violations(&self) -> Vec<Violation> {
         match &self.integrals {
             Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
-            Integrals::Wide(wide) => check(&wide.0, &wide.1, F237::from_f64(self.resolution)),
+            Integrals::Wide(wide) => {
+                let resolution = F237::from_f64(self.resolution);
+                check(&wide.brep, &wide.measures, resolution)
+            }
         }
     }
 }
@@ -183,6 +199,20 @@ struct Evaluated<N: Float> {
     decisions: DecisionStats,
     resolution: f64,
     bounds: Aabb,
+}
+
+impl<N: Float> Evaluated<N> {
+    /// The evaluation of the empty tree.
+    fn empty() -> Self {
+        let brep = Brep::default();
+        Self {
+            measures: FaceIntegrals::new(&brep),
+            brep,
+            decisions: Predicates::new(0.0).decisions(),
+            resolution: 0.0,
+            bounds: Aabb::EMPTY,
+        }
+    }
 }
 
 impl From<Evaluated<f64>> for Evaluation {
@@ -209,7 +239,10 @@ impl From<Evaluated<F237>> for Evaluation {
             decisions,
             resolution: known.resolution,
             bounds: known.bounds,
-            integrals: Integrals::Wide(Box::new((known.brep, known.measures))),
+            integrals: Integrals::Wide(Box::new(WideBoundary {
+                brep: known.brep,
+                measures: known.measures,
+            })),
             view_resolution: None,
             mass: OnceLock::new(),
         }
@@ -288,9 +321,7 @@ fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Eva
 
 /// Evaluates in 237 bits with the finest resolution.
 fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
-    let size = halfspaces::HalfSpaceModel::<F237>::new(tree)
-        .bounds
-        .diagonal();
+    let size = HalfSpaceModel::<F237>::new(tree).bounds.diagonal();
     let finest = EvaluationOptions {
         resolution: Some(FINEST_RESOLUTION * size),
         ..*options
@@ -298,23 +329,16 @@ fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, E
     evaluated::<F237>(tree, &finest)
 }
 
+/// Evaluates in one precision, with the resolution that the options give.
 fn evaluated<N: Float>(
     tree: &Tree,
     options: &EvaluationOptions,
 ) -> Result<Evaluated<N>, EvaluationError> {
-    let solids = halfspaces::HalfSpaceModel::new(tree);
-    let size = solids.bounds.diagonal();
     if tree.is_empty() {
-        let decisions = Predicates::new(0.0).decisions();
-        let (brep, bounds) = (Brep::default(), Aabb::EMPTY);
-        return Ok(Evaluated {
-            measures: FaceIntegrals::new(&brep),
-            brep,
-            decisions,
-            resolution: 0.0,
-            bounds,
-        });
+        return Ok(Evaluated::empty());
     }
+    let solids = HalfSpaceModel::new(tree);
+    let size = solids.bounds.diagonal();
     if !size.lies_between([1.0 / LARGEST, LARGEST]) {
         return Err(EvaluationError::Size);
     }
@@ -325,7 +349,7 @@ fn evaluated<N: Float>(
     };
     let straight = near_cylinders::without(tree, &predicates);
     let (tree, solids) = match &straight {
-        Some(tree) => (tree, halfspaces::HalfSpaceModel::new(tree)),
+        Some(tree) => (tree, HalfSpaceModel::new(tree)),
         None => (tree, solids),
     };
     let extent = RegionOfInterest {
@@ -334,48 +358,97 @@ fn evaluated<N: Float>(
     };
     near_cylinders::check(&solids, &extent, &predicates)?;
     let most = options.entity_limit.unwrap_or(MAX_ENTITIES);
-    let (arrangement, sources) =
-        carrier_intersections::arrange(tree, &solids, &extent, &predicates, most)?;
-    let pieces = edge_candidates::pieces(&arrangement, &predicates);
+    let generated = generated(tree, &solids, &extent, &predicates, most)?;
+    let classified = classified(tree, &solids, generated, &predicates)?;
+    Ok(Evaluated {
+        brep: classified.brep,
+        measures: classified.measures,
+        decisions: predicates.decisions(),
+        resolution,
+        bounds: solids.bounds,
+    })
+}
+
+/// The arrangement of a tree's carriers, and the pieces of its curves.
+struct Generated<N: Float> {
+    arrangement: Arrangement<N>,
+    pieces: Vec<EdgeCandidate<N>>,
+}
+
+/// Generates the edge candidates. In exact evaluation every coincidence among them is proven.
+fn generated<N: Float>(
+    tree: &Tree,
+    solids: &HalfSpaceModel<N>,
+    extent: &RegionOfInterest<N>,
+    predicates: &Predicates,
+    most: usize,
+) -> Result<Generated<N>, EvaluationError> {
+    let Arranged {
+        arrangement,
+        sources,
+    } = carrier_intersections::arrange(tree, solids, extent, predicates, most)?;
+    let pieces = edge_candidates::pieces(&arrangement, predicates);
     if predicates.is_exact() {
-        incidence_proof::prove(&arrangement, &pieces, &sources, &predicates)?;
+        incidence_proof::prove(&arrangement, &pieces, &sources, predicates)?;
         if let Some(doubt) = predicates.first_unproven() {
             let (question, place) = (doubt.question, doubt.place);
             return Err(EvaluationError::UnprovenCoincidence { question, place });
         }
     }
-    let concern = relevance::CloseCallFilter {
-        solids: &solids,
-        arrangement: &arrangement,
-        membership: &membership::Membership::new(tree),
-        predicates: &predicates,
+    Ok(Generated {
+        arrangement,
+        pieces,
+    })
+}
+
+/// A boundary that keeps all rules and agrees with the tree, and its integrals.
+struct Classified<N: Float> {
+    brep: Brep<N>,
+    measures: FaceIntegrals<N>,
+}
+
+/// Classifies the edge candidates, assembles the edges among them, and checks the boundary.
+fn classified<N: Float>(
+    tree: &Tree,
+    solids: &HalfSpaceModel<N>,
+    generated: Generated<N>,
+    predicates: &Predicates,
+) -> Result<Classified<N>, EvaluationError> {
+    let concern = CloseCallFilter {
+        solids,
+        arrangement: &generated.arrangement,
+        membership: &Membership::new(tree),
+        predicates,
     };
     concern.list();
-    vanished::list(tree, &predicates);
-    let raw = edge_classification::boundary(&concern, pieces)?;
-    let brep = assemble(raw, &predicates)?;
-    let exact_resolution = N::from_f64(resolution);
+    vanished::list(tree, predicates);
+    let raw = edge_classification::boundary(&concern, generated.pieces)?;
+    let brep = assemble(raw, predicates)?;
     let measures = FaceIntegrals::new(&brep);
-    if let Some(broken) = check(&brep, &measures, exact_resolution).into_iter().next() {
-        return Err(match worst_gap(&brep, exact_resolution) {
-            Some((place, distance)) => EvaluationError::IllConditioned {
-                place: rounded(&place),
-                distance: distance.rounded(),
-                resolution,
-            },
-            None => EvaluationError::InvalidBoundary(broken),
-        });
+    check_rules(&brep, &measures, predicates)?;
+    match concern.contradiction(&brep) {
+        Some(place) => Err(EvaluationError::Contradiction { place }),
+        None => Ok(Classified { brep, measures }),
     }
-    if let Some(place) = concern.contradiction(&brep) {
-        return Err(EvaluationError::Contradiction { place });
-    }
-    let decisions = predicates.decisions();
-    Ok(Evaluated {
-        brep,
-        measures,
-        decisions,
-        resolution,
-        bounds: solids.bounds,
+}
+
+/// Refuses a boundary that breaks a rule.
+fn check_rules<N: Float>(
+    brep: &Brep<N>,
+    measures: &FaceIntegrals<N>,
+    predicates: &Predicates,
+) -> Result<(), EvaluationError> {
+    let resolution = predicates.resolution();
+    let Some(broken) = check(brep, measures, resolution).into_iter().next() else {
+        return Ok(());
+    };
+    Err(match worst_gap(brep, resolution) {
+        Some(gap) => EvaluationError::IllConditioned {
+            place: rounded(&gap.place),
+            distance: gap.distance.rounded(),
+            resolution: predicates.resolution(),
+        },
+        None => EvaluationError::InvalidBoundary(broken),
     })
 }
 

@@ -5,12 +5,12 @@
 //! which the tree leaves a choice. Decisions between other carriers change nothing there.
 
 use super::arrangement::Arrangement;
-use super::close_calls::Between;
+use super::close_calls::{Between, Unlisted};
+use super::distinct_surfaces::CarrierSide;
 use super::halfspaces::{HalfSpace, HalfSpaceModel};
 use super::membership::Membership;
 use super::vertices::VertexCandidate;
 use nalgebra::{Point3, Vector3};
-use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
@@ -28,7 +28,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
     /// Lists the close calls that concern the boundary: those recorded during the evaluation, and
     /// those between corners and surfaces.
     pub fn list(&self) {
-        for (call, between) in &self.arrangement.calls {
+        for Unlisted { call, between } in &self.arrangement.calls {
             if self.concerns(call.place, between) {
                 self.predicates.list(call.clone());
             }
@@ -43,10 +43,10 @@ impl<N: Float> CloseCallFilter<'_, N> {
         let place = rounded(&corner.point);
         let mut passing: Vec<(usize, N)> = Vec::new();
         for s in self.arrangement.tree.locate_all_at_point(place) {
-            for (side, &(c, _)) in self.sides(s.data) {
+            for (side, own) in self.sides(s.data) {
                 let distance = side.surface.distance(&corner.point);
-                if self.predicates.is_close(distance) && !corner.is_on(c) {
-                    passing.push((c, distance));
+                if self.predicates.is_close(distance) && !corner.is_on(own.carrier) {
+                    passing.push((own.carrier, distance));
                 }
             }
         }
@@ -64,11 +64,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }
     }
 
-    /// The sides of a solid, each with its carrier and its sense.
-    fn sides(
-        &self,
-        solid: usize,
-    ) -> impl Iterator<Item = (&HalfSpace<N>, &(usize, Sense))> + Clone {
+    /// The sides of a solid, each with its carrier.
+    fn sides(&self, solid: usize) -> impl Iterator<Item = (&HalfSpace<N>, &CarrierSide)> + Clone {
         let sides = self.solids.all[solid].sides.iter();
         sides.zip(&self.arrangement.sides[solid])
     }
@@ -79,8 +76,12 @@ impl<N: Float> CloseCallFilter<'_, N> {
         let vertex = |v: usize| is_vertex(&self.arrangement.corners[v], has);
         match between {
             Between::Corners(both) => both.iter().all(|&v| vertex(v)),
-            Between::CornerAndPoint(v, point) => vertex(*v) && point.iter().all(has),
-            Between::Curve(m, c) => has(c) && is_edge(&self.arrangement.meetings[*m].carriers, has),
+            Between::CornerAndPoint { corner, carriers } => {
+                vertex(*corner) && carriers.iter().all(has)
+            }
+            Between::Curve { meeting, carrier } => {
+                has(carrier) && is_edge(&self.arrangement.meetings[*meeting].carriers, has)
+            }
             Between::Carriers(both) => both.iter().all(has),
         }
     }
@@ -101,8 +102,9 @@ impl<N: Float> CloseCallFilter<'_, N> {
             .locate_in_envelope_intersecting(around)
         {
             let solid = &self.solids.all[s.data];
-            let away =
-                |(side, &(c, _)): (&HalfSpace<N>, &(usize, Sense))| (side.surface.distance(&p), c);
+            let away = |(side, own): (&HalfSpace<N>, &CarrierSide)| {
+                (side.surface.distance(&p), own.carrier)
+            };
             let sides = self.sides(s.data).map(away);
             let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
             match Side::new(outside, margin) {

@@ -8,12 +8,12 @@ use super::vertices::VertexMerger;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::geometry::curve_surface::{comes_near, lies_on, roots};
+use premio_kernel::geometry::curve_surface::{CurveSurfaceRoots, comes_near, lies_on, roots};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded, solution};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use premio_kernel::number::roots::{Root, RootKind};
+use premio_kernel::number::roots::{NearMiss, Root, RootKind};
 use rstar::AABB;
 use std::collections::HashMap;
 
@@ -48,24 +48,24 @@ impl<N: Float> Arrangement<N> {
     ) {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
-        let mut near: Vec<(usize, Aabb)> = Vec::new();
+        let mut near: Vec<CarrierFace> = Vec::new();
         for s in self.tree.locate_in_envelope_intersecting(around) {
             for (k, side) in solids.all[s.data].sides.iter().enumerate() {
-                let c = self.sides[s.data][k].0;
-                let face = side.bounds.grown(predicates.reach::<N>());
-                if !m.carriers.contains(&c) && common(&face, &m.bounds).is_some() {
-                    near.push((c, face));
+                let carrier = self.sides[s.data][k].carrier;
+                let bounds = side.bounds.grown(predicates.reach::<N>());
+                if !m.carriers.contains(&carrier) && common(&bounds, &m.bounds).is_some() {
+                    near.push(CarrierFace { carrier, bounds });
                 }
             }
         }
-        near.sort_by_key(|n| n.0);
+        near.sort_by_key(|face| face.carrier);
         let known: Vec<Cut<N>> = m.cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
-        for faces in near.chunk_by(|a, b| a.0 == b.0) {
+        for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
             match self.cuts_by(index, faces, &known, predicates, corners, later) {
                 Some(found) => cuts.extend(found),
-                None => holding.push(faces[0].0),
+                None => holding.push(faces[0].carrier),
             }
         }
         let m = &mut self.meetings[index];
@@ -78,68 +78,32 @@ impl<N: Float> Arrangement<N> {
     fn cuts_by(
         &self,
         index: usize,
-        faces: &[(usize, Aabb)],
+        faces: &[CarrierFace],
         known: &[Cut<N>],
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Option<Vec<Cut<N>>> {
-        let c = faces[0].0;
+        let carrier = faces[0].carrier;
         let m = &self.meetings[index];
-        let mut cuts = self.special_points(index, c, known, predicates, corners);
-        let special: Vec<(N, Point3<N>)> = cuts
-            .iter()
-            .map(|s| (s.t, corners.all[s.vertex].point))
-            .collect();
-        let at_special = |p: &Point3<N>| {
-            let mut points = special.iter().map(|s| s.1);
-            points.any(|s| (s - p).length().is_within(predicates.reach()))
+        let mut cuts = self.special_points(index, carrier, known, predicates, corners);
+        let special = cuts.iter().map(|cut| SpecialPoint {
+            t: cut.t,
+            point: corners.all[cut.vertex].point,
+        });
+        let crossed = CurveAndCarrier {
+            arrangement: self,
+            index,
+            carrier,
+            special: special.collect(),
+            predicates,
         };
-        let (roots, misses) = m.intersection(&self.carriers[c], faces, predicates)?;
-        let mut note = |question, distance, p: &Point3<N>| {
-            let (_, call) = predicates.decide(question, distance, rounded(p));
-            let call = call.map(|call| (call, Between::Curve(index, c)));
-            later.calls.extend(call);
-        };
-        for r in roots {
-            let p = m.curve.point(r.t);
-            if special.iter().any(|s| m.holds_within(r.lo, r.hi, s.0)) || at_special(&p) {
-                continue;
-            }
-            if let Some(margin) = r.margin {
-                note("curve on surface", margin, &p);
-            }
-            let ends = [r.lo, r.hi].map(|t| (m.curve.point(t) - p).length());
-            let mut reach = ends[0].max(ends[1]);
-            if r.contact == RootKind::Touching {
-                reach = reach.max(m.touching_length(r.t, &self.carriers[c], predicates));
-            }
-            if reach.is_beyond(predicates.reach()) {
-                later.wide.push(Wide {
-                    meeting: index,
-                    carrier: c,
-                    t: r.t,
-                    reach,
-                });
-                continue;
-            }
-            let all = [m.carriers[0], m.carriers[1], c];
-            let is_simple = r.contact == RootKind::Simple;
-            let p = if is_simple {
-                self.polished(p, all, predicates)
-            } else {
-                p
-            };
-            cuts.push(Cut {
-                t: r.t,
-                vertex: corners.at(&p, &all, predicates),
-            });
+        let found = m.intersection(&self.carriers[carrier], faces, predicates)?;
+        for root in &found.roots {
+            cuts.extend(crossed.cut_at(root, corners, later));
         }
-        for (t, value) in misses {
-            let p = m.curve.point(t);
-            if !at_special(&p) {
-                note("curve beside surface", value, &p);
-            }
+        for miss in &found.misses {
+            later.calls.extend(crossed.near_miss(miss));
         }
         Some(cuts)
     }
@@ -299,8 +263,118 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// The roots of a surface along a curve, and the near misses.
-type Intersections<N> = (Vec<Root<N>>, Vec<(N, N)>);
+/// A face of a carrier, close to a curve.
+struct CarrierFace {
+    carrier: usize,
+    /// Its box, enlarged.
+    bounds: Aabb,
+}
+
+/// A known point of a curve on a carrier.
+struct SpecialPoint<N: Float = f64> {
+    t: N,
+    point: Point3<N>,
+}
+
+/// A curve that a carrier splits.
+struct CurveAndCarrier<'a, N: Float = f64> {
+    arrangement: &'a Arrangement<N>,
+    /// The index of the curve.
+    index: usize,
+    carrier: usize,
+    /// The common points that are known beforehand.
+    special: Vec<SpecialPoint<N>>,
+    predicates: &'a Predicates,
+}
+
+impl<N: Float> CurveAndCarrier<'_, N> {
+    fn curve(&self) -> &IntersectionCurve<N> {
+        &self.arrangement.meetings[self.index]
+    }
+
+    fn surface(&self) -> &Surface<N> {
+        &self.arrangement.carriers[self.carrier]
+    }
+
+    /// The cut at a root. `None` at a special point, and at a contact of high order, which is
+    /// handled later.
+    fn cut_at(
+        &self,
+        root: &Root<N>,
+        corners: &mut VertexMerger<N>,
+        later: &mut Later<N>,
+    ) -> Option<Cut<N>> {
+        let m = self.curve();
+        let p = m.curve.point(root.t);
+        let within = |s: &SpecialPoint<N>| m.holds_within(root.lo, root.hi, s.t);
+        if self.special.iter().any(within) || self.is_special(&p) {
+            return None;
+        }
+        if let Some(margin) = root.margin {
+            let call = self.close_call("curve on surface", margin, &p);
+            later.calls.extend(call);
+        }
+        let reach = self.contact_length(root, &p);
+        if reach.is_beyond(self.predicates.reach()) {
+            later.wide.push(Wide {
+                meeting: self.index,
+                carrier: self.carrier,
+                t: root.t,
+                reach,
+            });
+            return None;
+        }
+        let all = [m.carriers[0], m.carriers[1], self.carrier];
+        let p = match root.contact {
+            RootKind::Simple => self.arrangement.polished(p, all, self.predicates),
+            _ => p,
+        };
+        Some(Cut {
+            t: root.t,
+            vertex: corners.at(&p, &all, self.predicates),
+        })
+    }
+
+    /// Whether a point coincides with a special point.
+    fn is_special(&self, p: &Point3<N>) -> bool {
+        let reach = self.predicates.reach();
+        let mut special = self.special.iter();
+        special.any(|s| (s.point - p).length().is_within(reach))
+    }
+
+    /// The distance from a root up to which the points are within the resolution.
+    fn contact_length(&self, root: &Root<N>, p: &Point3<N>) -> N {
+        let m = self.curve();
+        let ends = [root.lo, root.hi].map(|t| (m.curve.point(t) - p).length());
+        let reach = ends[0].max(ends[1]);
+        match root.contact {
+            RootKind::Touching => {
+                reach.max(m.touching_length(root.t, self.surface(), self.predicates))
+            }
+            _ => reach,
+        }
+    }
+
+    /// The close call where the curve passes the carrier without a root, but not at a special point.
+    fn near_miss(&self, miss: &NearMiss<N>) -> Option<Unlisted> {
+        let p = self.curve().curve.point(miss.t);
+        match self.is_special(&p) {
+            true => None,
+            false => self.close_call("curve beside surface", miss.value, &p),
+        }
+    }
+
+    /// Decides whether a point of the curve lies on the carrier. Returns the close call, if it is
+    /// one.
+    fn close_call(&self, question: &'static str, distance: N, p: &Point3<N>) -> Option<Unlisted> {
+        let decision = self.predicates.decide(question, distance, rounded(p));
+        let between = Between::Curve {
+            meeting: self.index,
+            carrier: self.carrier,
+        };
+        decision.call.map(|call| Unlisted { call, between })
+    }
+}
 
 impl<N: Float> IntersectionCurve<N> {
     /// The intersections of the curve with a surface, inside the boxes of the surface's faces;
@@ -308,26 +382,26 @@ impl<N: Float> IntersectionCurve<N> {
     fn intersection(
         &self,
         surface: &Surface<N>,
-        faces: &[(usize, Aabb)],
+        faces: &[CarrierFace],
         predicates: &Predicates,
-    ) -> Option<Intersections<N>> {
+    ) -> Option<CurveSurfaceRoots<N>> {
         let resolution = predicates.resolution();
         if lies_on(&self.curve, self.range, surface, resolution) {
             return None;
         }
-        let mut all = Intersections::default();
+        let mut all = CurveSurfaceRoots::default();
         let near = |b: &Aabb| {
-            faces.iter().any(|(_, face)| common(face, b).is_some())
+            faces.iter().any(|face| common(&face.bounds, b).is_some())
                 && comes_near(surface, b, predicates.reach())
         };
         let mut parts = self.parts.as_slice();
-        while let Some(first) = parts.iter().position(|p| near(&p.1)) {
+        while let Some(first) = parts.iter().position(|p| near(&p.bounds)) {
             parts = &parts[first..];
-            let count = parts.iter().take_while(|p| near(&p.1)).count();
-            let range = [parts[0].0[0], parts[count - 1].0[1]];
-            let (found, misses) = roots(&self.curve, range, surface, resolution);
-            all.0.extend(found);
-            all.1.extend(misses);
+            let count = parts.iter().take_while(|p| near(&p.bounds)).count();
+            let range = [parts[0].range[0], parts[count - 1].range[1]];
+            let found = roots(&self.curve, range, surface, resolution);
+            all.roots.extend(found.roots);
+            all.misses.extend(found.misses);
             parts = &parts[count..];
         }
         Some(all)

@@ -39,6 +39,13 @@ pub(super) struct VertexMerger<N: Float = f64> {
     cell: N,
 }
 
+/// The corner closest to a point.
+#[derive(Clone, Copy)]
+struct NearestCorner<N: Float = f64> {
+    distance: N,
+    corner: usize,
+}
+
 impl<N: Float> VertexMerger<N> {
     pub fn new(resolution: N) -> Self {
         Self {
@@ -71,16 +78,21 @@ impl<N: Float> VertexMerger<N> {
     /// The corner that coincides with `p`, or a new one.
     fn found(&mut self, p: &Point3<N>, carriers: &[usize], predicates: &Predicates) -> usize {
         let new = self.all.len();
-        if let Some((d, v)) = self.nearest(p, predicates.reach()) {
-            let (side, call) = predicates.decide("point on point", d, rounded(p));
-            let one = side == Side::On;
+        if let Some(NearestCorner { distance, corner }) = self.nearest(p, predicates.reach()) {
+            let decision = predicates.decide("point on point", distance, rounded(p));
+            let one = decision.side == Side::On;
             let between = match one {
-                true => Between::CornerAndPoint(v, carriers.to_vec()),
-                false => Between::Corners([v, new]),
+                true => Between::CornerAndPoint {
+                    corner,
+                    carriers: carriers.to_vec(),
+                },
+                false => Between::Corners([corner, new]),
             };
-            self.calls.extend(call.map(|call| (call, between)));
+            let call = decision.call;
+            self.calls
+                .extend(call.map(|call| Unlisted { call, between }));
             if one {
-                return v;
+                return corner;
             }
         }
         self.all.push(VertexCandidate {
@@ -92,25 +104,25 @@ impl<N: Float> VertexMerger<N> {
         new
     }
 
-    /// The corner closest to `p` within `reach`, with its distance.
-    fn nearest(&self, p: &Point3<N>, reach: N) -> Option<(N, usize)> {
+    /// The corner closest to `p` within `reach`.
+    fn nearest(&self, p: &Point3<N>, reach: N) -> Option<NearestCorner<N>> {
         let lo = self.key(&(p - Vector3::repeat(reach)));
         let hi = self.key(&(p + Vector3::repeat(reach)));
-        let mut best: Option<(N, usize)> = None;
+        let mut best: Option<NearestCorner<N>> = None;
         // A cell is wider than twice the reach, so at most two cells matter along each axis.
         let both = |i: usize| [Some(lo[i]), (hi[i] != lo[i]).then_some(hi[i])];
         for x in both(0).into_iter().flatten() {
             for y in both(1).into_iter().flatten() {
                 for z in both(2).into_iter().flatten() {
-                    for &v in self.grid.get(&[x, y, z]).into_iter().flatten() {
-                        let d = (self.all[v].point - p).length();
-                        if best.is_none_or(|b| d.is_short_of(b.0)) {
-                            best = Some((d, v));
+                    for &corner in self.grid.get(&[x, y, z]).into_iter().flatten() {
+                        let distance = (self.all[corner].point - p).length();
+                        if best.is_none_or(|b| distance.is_short_of(b.distance)) {
+                            best = Some(NearestCorner { distance, corner });
                         }
                     }
                 }
             }
         }
-        best.filter(|b| b.0.is_short_of(reach))
+        best.filter(|b| b.distance.is_short_of(reach))
     }
 }

@@ -45,8 +45,17 @@ pub struct Surfaces<'a> {
     material: &'a RayOracle,
     /// All surfaces, in the part's frame.
     all: Vec<Carrier>,
-    /// The surfaces of each leaf in its own frame, with their indices in `all`.
-    of_leaves: Vec<Vec<(Carrier, usize)>>,
+    /// The surfaces of each leaf.
+    of_leaves: Vec<Vec<LeafSurface>>,
+}
+
+/// A surface of a leaf.
+#[derive(Debug)]
+struct LeafSurface {
+    /// The surface in the leaf's own frame.
+    carrier: Carrier,
+    /// Its index among all surfaces.
+    surface: usize,
 }
 
 impl Carrier {
@@ -146,11 +155,14 @@ impl<'a> Surfaces<'a> {
             let own = carriers(&leaf.shape).into_iter().map(|local| {
                 let placed = local.placed(leaf, &middle);
                 let known = all.iter().position(|c| c.coincides(&placed, near, size));
-                let index = known.unwrap_or_else(|| {
+                let surface = known.unwrap_or_else(|| {
                     all.push(placed);
                     all.len() - 1
                 });
-                (local, index)
+                LeafSurface {
+                    carrier: local,
+                    surface,
+                }
             });
             own.collect()
         });
@@ -206,7 +218,8 @@ impl<'a> Surfaces<'a> {
             _ => leaf.shape.level(&p).abs(),
         };
         let own = self.of_leaves[event.leaf].iter();
-        let (carrier, surface) = own.min_by(|a, b| off(&a.0).total_cmp(&off(&b.0)))?;
+        let LeafSurface { carrier, surface } =
+            own.min_by(|a, b| off(&a.carrier).total_cmp(&off(&b.carrier)))?;
         Some(SurfaceCrossing {
             at: event.at,
             surface: *surface,

@@ -11,7 +11,7 @@ mod sight;
 mod volume;
 
 pub use crossing::{SurfaceCrossing, Surfaces};
-pub use sight::{Clearance, SightEvidence};
+pub use sight::{Clearance, SightEvidence, SightSegment};
 pub use volume::Estimate;
 
 use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
@@ -102,8 +102,7 @@ impl Leaf {
 
     /// The bounding box in the part's frame.
     fn bounds(&self) -> Aabb {
-        let (lo, hi) = self.shape.bounds();
-        let (lo, hi) = (Vector3::from(lo), Vector3::from(hi));
+        let [lo, hi] = self.shape.bounds().map(Vector3::from);
         let centre = self.turn * ((lo + hi) * 0.5) + self.offset;
         let reach = self.turn.abs() * ((hi - lo) * 0.5);
         Aabb {

@@ -60,17 +60,17 @@ impl Shape {
         }
     }
 
-    /// The bounding box.
-    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+    /// The least and the greatest corner of the bounding box.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
         match *self {
-            Self::Block(size) | Self::Wedge(size) => ([0.0; 3], size),
+            Self::Block(size) | Self::Wedge(size) => [[0.0; 3], size],
             Self::Frustum { height, widest, .. } => {
-                ([-widest, -widest, 0.0], [widest, widest, height])
+                [[-widest, -widest, 0.0], [widest, widest, height]]
             }
-            Self::Sphere(r) => ([-r; 3], [r; 3]),
+            Self::Sphere(r) => [[-r; 3], [r; 3]],
             Self::Torus { major, minor } => {
                 let r = major + minor;
-                ([-r, -r, -minor], [r, r, minor])
+                [[-r, -r, -minor], [r, r, minor]]
             }
         }
     }
@@ -87,13 +87,13 @@ impl Shape {
     }
 
     pub fn contains(&self, p: &Vector3<f64>) -> bool {
-        let (lo, hi) = self.bounds();
+        let [lo, hi] = self.bounds();
         (0..3).all(|i| lo[i] <= p[i] && p[i] <= hi[i]) && self.level(p) <= 0.0
     }
 
     /// Adds the intervals of t in which `o + t d` is inside, in order.
     pub fn spans(&self, o: &Vector3<f64>, d: &Vector3<f64>, spans: &mut Vec<[f64; 2]>) {
-        let (lo, hi) = self.bounds();
+        let [lo, hi] = self.bounds();
         let mut range = [f64::NEG_INFINITY, f64::INFINITY];
         let boxed = (0..3)
             .all(|i| clip(&mut range, lo[i] - o[i], -d[i]) && clip(&mut range, o[i] - hi[i], d[i]));

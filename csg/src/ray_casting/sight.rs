@@ -51,6 +51,15 @@ pub enum SightEvidence {
     Thin,
 }
 
+/// The line of sight from a point to the eye or the near plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SightSegment {
+    /// The unit vector from the point to the eye.
+    pub towards: Vector3<f64>,
+    /// The length.
+    pub length: f64,
+}
+
 impl Clearance {
     /// The clearance with the lines of sight moved closer by a factor.
     pub fn closer(&self, by: f64) -> Self {
@@ -66,12 +75,11 @@ impl RayOracle {
     /// Counts how often the lines of sight close to a contour point enter material between the eye
     /// and the point.
     ///
-    /// `sight` gives the unit direction from a point to the eye, and the length of the line of
-    /// sight.
+    /// `sight` gives the line of sight from a point to the eye.
     pub fn invisibility(
         &self,
         point: &Point3<f64>,
-        sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
+        sight: impl Fn(&Point3<f64>) -> SightSegment,
         clearance: &Clearance,
     ) -> SightEvidence {
         self.count(point, sight, clearance)
@@ -81,12 +89,12 @@ impl RayOracle {
     fn count(
         &self,
         point: &Point3<f64>,
-        sight: impl Fn(&Point3<f64>) -> (Vector3<f64>, f64),
+        sight: impl Fn(&Point3<f64>) -> SightSegment,
         clearance: &Clearance,
     ) -> Result<SightEvidence, SightEvidence> {
         // At the lateral distance from a limb, its own surface is closer by this much.
         let depth = 2.0 * (clearance.lateral * clearance.size).sqrt();
-        let (towards, length) = sight(point);
+        let SightSegment { towards, length } = sight(point);
         if length <= depth {
             return Err(SightEvidence::Close);
         }
@@ -104,7 +112,7 @@ impl RayOracle {
             let (sin, cos) = ((k as f64 + 0.25) * TAU / NEIGHBOURS as f64).sin_cos();
             let at_lateral = |by: f64| {
                 let origin = frame.point(by * cos, by * sin, 0.0);
-                let (towards, length) = sight(&origin);
+                let SightSegment { towards, length } = sight(&origin);
                 Ok((self.along(&origin, towards, clearance)?, length))
             };
             let (lateral, length) = at_lateral(clearance.lateral)?;

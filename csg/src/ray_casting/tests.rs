@@ -164,7 +164,10 @@ fn gaps_are_closed() {
 
 /// The faces in front of a point of a part of the given size, seen from far above.
 fn from_above(part: &RayOracle, size: f64, point: [f64; 3]) -> SightEvidence {
-    let up = |_: &Point3<f64>| (Vector3::z(), f64::INFINITY);
+    let up = |_: &Point3<f64>| SightSegment {
+        towards: Vector3::z(),
+        length: f64::INFINITY,
+    };
     let clearance = Clearance {
         sliver: 1e-9,
         lateral: 1e-6,

@@ -14,6 +14,7 @@ mod padl;
 mod pov;
 mod rigid_fit;
 mod scad;
+mod spanned;
 #[cfg(test)]
 mod tests;
 

@@ -14,6 +14,13 @@ pub(super) struct Notes {
     digits: Option<f64>,
 }
 
+/// The remarks on a text.
+pub(super) struct Remarks {
+    /// The noise of the coordinates, if any.
+    pub digits: Option<f64>,
+    pub notes: Vec<Note>,
+}
+
 impl Notes {
     /// The number of remarks of one kind that are kept.
     const MOST: usize = 100;
@@ -48,8 +55,8 @@ impl Notes {
         self.add(text, span);
     }
 
-    /// The noise of the coordinates, if any, and all remarks.
-    pub(super) fn finish(mut self) -> (Option<f64>, Vec<Note>) {
+    /// All remarks.
+    pub(super) fn finish(mut self) -> Remarks {
         if let (Some(last), 1..) = (self.notes.last(), self.passed_over) {
             let span = last.span.clone();
             self.add(
@@ -57,6 +64,9 @@ impl Notes {
                 span,
             );
         }
-        (self.digits, self.notes)
+        Remarks {
+            digits: self.digits,
+            notes: self.notes,
+        }
     }
 }

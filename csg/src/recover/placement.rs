@@ -267,7 +267,8 @@ impl<'t> Placement<'t> {
         let is_round = across
             .iter()
             .all(|&i| member.axes[i].local == LocalAxis::Across);
-        if !is_sphere && !(is_round && used.local == LocalAxis::Along(2)) {
+        let is_along = is_round && used.local == LocalAxis::Along(2);
+        if !(is_sphere || is_along) {
             return None;
         }
         let written = &coordinates.written[k];

@@ -115,8 +115,8 @@ impl Use {
         }
     }
 
-    /// The moved part, as it is used inside the motion, and the steps of the motion.
-    fn resolved(mut self, builder: &Builder) -> (Self, Vec<TransformStep>) {
+    /// The part without its motion.
+    fn resolved(mut self, builder: &Builder) -> ResolvedUse {
         let mut steps = Vec::new();
         if let BuilderNode::Moved { child, entry, .. } = builder.draft(self.draft) {
             // From the last placing to the first: the outer ones act on the inner steps.
@@ -139,11 +139,14 @@ impl Use {
             steps.reverse();
             self.draft = *child;
         }
-        (self, Transform::tidied(steps))
+        ResolvedUse {
+            part: self,
+            steps: Transform::tidied(steps),
+        }
     }
 
-    /// A primitive as it is used, and the translation that a mirror causes.
-    fn primitive(&self, primitive: &Primitive) -> (Primitive, Option<TransformStep>) {
+    /// A primitive as it is used.
+    fn primitive(&self, primitive: &Primitive) -> UsedPrimitive {
         let primitive = match &self.factor {
             Some(factor) => primitive.scaled(factor),
             None => primitive.clone(),
@@ -151,8 +154,23 @@ impl Use {
         let shift = self.mirrored.then(|| primitive.mirror_y());
         let shift = shift.filter(|motion| !motion.is_identity());
         let shift = shift.map(|motion| TransformStep::Shift(motion.offset().clone()));
-        (primitive, shift)
+        UsedPrimitive { primitive, shift }
     }
+}
+
+/// A part that is moved.
+struct ResolvedUse {
+    /// The part as it is used inside the motion.
+    part: Use,
+    /// The steps of the motion.
+    steps: Vec<TransformStep>,
+}
+
+/// A primitive as it is used.
+struct UsedPrimitive {
+    primitive: Primitive,
+    /// The translation that a mirror causes.
+    shift: Option<TransformStep>,
 }
 
 /// The syntax of a language.
@@ -206,14 +224,14 @@ fn enter(
     language: &mut impl Language,
     tasks: &mut Vec<Task>,
 ) {
-    let (part, mut steps) = part.resolved(builder);
+    let ResolvedUse { part, mut steps } = part.resolved(builder);
     if let Some(name) = name(&part) {
         language.name(name, &steps);
         return;
     }
     match builder.draft(part.draft) {
         BuilderNode::Leaf(primitive) => {
-            let (primitive, shift) = part.primitive(primitive);
+            let UsedPrimitive { primitive, shift } = part.primitive(primitive);
             steps.splice(0..0, shift);
             let steps = Transform::tidied(steps);
             language.leaf(&primitive, &steps);
@@ -252,7 +270,7 @@ fn operands(
     while let Some(operand) = ahead.pop() {
         // (A - B) - C is A - B - C, while A - (B - C) stays.
         if op != Operation::Difference || operands.is_empty() {
-            let (inner, steps) = operand.clone().resolved(builder);
+            let ResolvedUse { part: inner, steps } = operand.clone().resolved(builder);
             if let BuilderNode::Operation { op: same, children } = builder.draft(inner.draft)
                 && *same == op
                 && steps.is_empty()

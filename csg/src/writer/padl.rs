@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use premio_kernel::number::rational::Rational;
 
 use super::number::quotient;
-use super::turns::about_axes;
+use super::turns::{AxisTurn, about_axes};
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::{Builder, BuilderNode};
 use crate::primitive::Primitive;
@@ -34,7 +34,7 @@ fn named(builder: &Builder, top: &Use) -> BTreeMap<Use, usize> {
     let mut again: BTreeSet<Use> = BTreeSet::new();
     let mut ahead = vec![top.clone()];
     while let Some(part) = ahead.pop() {
-        let (part, _) = part.resolved(builder);
+        let part = part.resolved(builder).part;
         let BuilderNode::Operation { children, .. } = builder.draft(part.draft) else {
             continue;
         };
@@ -66,7 +66,7 @@ impl Padl {
                 }
                 TransformStep::Turn { .. } | TransformStep::Quaternion(_) => {
                     let turns = about_axes(step).into_iter();
-                    words.extend(turns.map(|(axis, degrees)| {
+                    words.extend(turns.map(|AxisTurn { axis, degrees }| {
                         format!("{}={}", ["ROTX", "ROTY", "ROTZ"][axis], quotient(&degrees))
                     }));
                 }

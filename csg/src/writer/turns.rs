@@ -5,16 +5,25 @@ use premio_kernel::number::rational::{Rational, from_f64};
 
 use crate::transform::{Transform, TransformStep};
 
+/// A rotation about a coordinate axis.
+#[derive(Clone)]
+pub(super) struct AxisTurn {
+    /// The index of the axis.
+    pub axis: usize,
+    /// The angle.
+    pub degrees: Rational,
+}
+
 /// The rotations about coordinate axes, in degrees, that compose to a step. They are exact if the
 /// step is one of them, or if whole decimals of a degree about x, y and z in this order give it;
 /// otherwise they are accurate to f64. A translation gives none.
-pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
+pub(super) fn about_axes(step: &TransformStep) -> Vec<AxisTurn> {
     if let TransformStep::Turn { axis, degrees } = step {
         let others = |k: usize| (0..3).all(|i| i == k || axis[i].is_zero());
         if let Some(k) = (0..3).find(|&k| others(k)) {
             let backwards = axis[k] < Rational::ZERO;
             let degrees = if backwards { -degrees } else { degrees.clone() };
-            return vec![(k, degrees)];
+            return vec![AxisTurn { axis: k, degrees }];
         }
     }
     let Ok(motion) = step.motion() else {
@@ -26,22 +35,28 @@ pub(super) fn about_axes(step: &TransformStep) -> Vec<(usize, Rational)> {
         .find(|turns| {
             let mut turned = Transform::new();
             let steps = turns.iter().cloned();
-            let mut steps = steps.map(|(axis, degrees)| TransformStep::about(axis, degrees));
+            let mut steps = steps.map(|turn| TransformStep::about(turn.axis, turn.degrees));
             let all = steps.all(|step| turned.push(step).is_ok());
             all && *turned.motion() == motion
         });
     exact.unwrap_or_else(|| {
-        let exactly = |(axis, degrees): (usize, f64)| Some((axis, from_f64(degrees)?));
+        let exactly = |(axis, degrees): (usize, f64)| {
+            let degrees = from_f64(degrees)?;
+            Some(AxisTurn { axis, degrees })
+        };
         angles.into_iter().enumerate().filter_map(exactly).collect()
     })
 }
 
 /// The non-zero rotations, by angles of few decimals.
-fn rounded(angles: &[f64; 3], digits: i32) -> Vec<(usize, Rational)> {
+fn rounded(angles: &[f64; 3], digits: i32) -> Vec<AxisTurn> {
     let scale = 10f64.powi(digits);
     let round = |(axis, &degrees): (usize, &f64)| {
         let whole = from_f64((degrees * scale).round())?;
-        (!whole.is_zero()).then(|| (axis, whole / from_f64(scale).unwrap_or(Rational::ONE)))
+        (!whole.is_zero()).then(|| AxisTurn {
+            axis,
+            degrees: whole / from_f64(scale).unwrap_or(Rational::ONE),
+        })
     };
     angles.iter().enumerate().filter_map(round).collect()
 }

@@ -32,15 +32,21 @@ pub fn ellipse(points: &[[f64; 2]]) -> Option<EllipseFit> {
         return None;
     }
     let frame = Frame::new(points)?;
-    let first = direct(points.iter().map(|&p| (frame.inward(p), 1.0)))?;
+    let first = direct(points.iter().map(|&p| WeightedPoint {
+        point: frame.inward(p),
+        weight: 1.0,
+    }))?;
     let weighed = points.iter().map(|&p| {
         let q = frame.inward(p);
         let [gx, gy] = slope(&first, q);
         let square = gx * gx + gy * gy;
-        (q, if square > 0.0 { 1.0 / square } else { 0.0 })
+        WeightedPoint {
+            point: q,
+            weight: if square > 0.0 { 1.0 / square } else { 0.0 },
+        }
     });
     let conic = frame.outward(&direct(weighed).unwrap_or(first));
-    let (centre, axes) = shape(&conic)?;
+    let EllipseShape { centre, axes } = shape(&conic)?;
     let square = |&p: &[f64; 2]| distance_to_conic(&conic, p).powi(2);
     let rms = (points.iter().map(square).sum::<f64>() / points.len() as f64).sqrt();
     rms.is_finite().then_some(EllipseFit {
@@ -128,10 +134,20 @@ impl Frame {
     }
 }
 
+/// A point with its weight in a fit.
+struct WeightedPoint {
+    point: [f64; 2],
+    weight: f64,
+}
+
 /// The weighted sums of x^i y^j: the fourth order, the third and so on, each by falling i.
-fn moments(points: impl Iterator<Item = ([f64; 2], f64)>) -> [f64; 15] {
+fn moments(points: impl Iterator<Item = WeightedPoint>) -> [f64; 15] {
     let mut sums = [0.0; 15];
-    for ([x, y], weight) in points {
+    for WeightedPoint {
+        point: [x, y],
+        weight,
+    } in points
+    {
         let [xx, xy, yy] = [x * x, x * y, y * y];
         let powers = [
             [xx * xx, xx * xy, xx * yy, xy * yy, yy * yy],
@@ -146,7 +162,7 @@ fn moments(points: impl Iterator<Item = ([f64; 2], f64)>) -> [f64; 15] {
 }
 
 /// The direct fit to weighted points.
-fn direct(points: impl Iterator<Item = ([f64; 2], f64)>) -> Option<[f64; 6]> {
+fn direct(points: impl Iterator<Item = WeightedPoint>) -> Option<[f64; 6]> {
     let [
         x4,
         x3y,
@@ -187,8 +203,14 @@ fn direct(points: impl Iterator<Item = ([f64; 2], f64)>) -> Option<[f64; 6]> {
     conic.iter().all(|k| k.is_finite()).then_some(conic)
 }
 
-/// The centre and the half axes of an ellipse; none for another conic.
-fn shape(&[a, b, c, d, e, f]: &[f64; 6]) -> Option<([f64; 2], [[f64; 2]; 2])> {
+/// The centre and the half axes of an ellipse.
+struct EllipseShape {
+    centre: [f64; 2],
+    axes: [[f64; 2]; 2],
+}
+
+/// The shape of an ellipse; none for another conic.
+fn shape(&[a, b, c, d, e, f]: &[f64; 6]) -> Option<EllipseShape> {
     let form = Matrix2::new(a, 0.5 * b, 0.5 * b, c);
     let centre = form.try_inverse()? * Vector2::new(-0.5 * d, -0.5 * e);
     let centre = [centre[0], centre[1]];
@@ -206,7 +228,7 @@ fn shape(&[a, b, c, d, e, f]: &[f64; 6]) -> Option<([f64; 2], [[f64; 2]; 2])> {
         .iter()
         .all(|(length, _)| length.is_finite() && *length > 0.0);
     let axes = axes.map(|(length, along)| along.map(|x| length * x));
-    real.then_some((centre, axes))
+    real.then_some(EllipseShape { centre, axes })
 }
 
 #[cfg(test)]

@@ -22,10 +22,10 @@ pub(super) fn mend(points: &[Point3<f64>], facets: &mut Vec<Facet>) -> Result<()
         let [corner, ..] = facets[flat].corners;
         turns = turns.checked_sub(1).ok_or(corner)?;
         let pair = turned(points, facets, &sides, flat).ok_or(corner)?;
-        for (at, facet) in pair {
-            facets[at] = facet;
-            sides.extend(sides_of(&facet).map(|side| (side, at)));
-            waiting.push(at);
+        for NewFacet { index, facet } in pair {
+            facets[index] = facet;
+            sides.extend(sides_of(&facet).map(|side| (side, index)));
+            waiting.push(index);
         }
     }
     Ok(())
@@ -89,6 +89,12 @@ fn is_flat(points: &[Point3<f64>], facet: &Facet) -> bool {
     })
 }
 
+/// A triangle that replaces the one at an index.
+struct NewFacet {
+    index: usize,
+    facet: Facet,
+}
+
 /// The two triangles that replace a flat one and its neighbour across the longest side: the corner
 /// between the two others is joined to the neighbour's opposite corner.
 fn turned(
@@ -96,7 +102,7 @@ fn turned(
     facets: &[Facet],
     sides: &HashMap<[u32; 2], usize>,
     flat: usize,
-) -> Option<[(usize, Facet); 2]> {
+) -> Option<[NewFacet; 2]> {
     let at = |c: u32| points[c as usize];
     let of = facets[flat].corners;
     let middle = (0..3).find(|&k| {
@@ -132,7 +138,8 @@ fn turned(
         normals: [normal, facet.normals[to], facet.normals[apex]],
         ..facet
     };
-    Some([(flat, near), (across, far)])
+    let replaced = |index: usize, facet: Facet| NewFacet { index, facet };
+    Some([replaced(flat, near), replaced(across, far)])
 }
 
 #[cfg(test)]

@@ -70,6 +70,14 @@ fn ends(mesh: &Mesh, side: Side) -> [u32; 2] {
     [corners[side % 3], corners[next(side) % 3]]
 }
 
+/// An edge along two consecutive points.
+#[derive(Clone, Copy)]
+struct DirectedEdge {
+    edge: EdgeId,
+    /// Its sense from the first point to the second.
+    sense: Sense,
+}
+
 /// The sides of a mesh's triangles.
 struct Sides<'a> {
     brep: &'a Brep,
@@ -105,18 +113,18 @@ impl Sides<'_> {
         Ok(twins)
     }
 
-    /// The edges along each pair of consecutive points, each with its sense from the first to the
-    /// second.
-    fn edges(&self) -> HashMap<[u32; 2], Vec<(EdgeId, Sense)>> {
+    /// The edges along each pair of consecutive points.
+    fn edges(&self) -> HashMap<[u32; 2], Vec<DirectedEdge>> {
         let mut edges: HashMap<_, Vec<_>> = HashMap::new();
+        let mut add = |points: [u32; 2], edge: EdgeId, sense: Sense| {
+            let directed = DirectedEdge { edge, sense };
+            edges.entry(points).or_default().push(directed);
+        };
         for (edge, line) in self.brep.topology.edge_ids().zip(&self.mesh.lines) {
             for pair in line.windows(2) {
                 let (a, b) = (pair[0], pair[1]);
-                edges.entry([a, b]).or_default().push((edge, Sense::Along));
-                edges
-                    .entry([b, a])
-                    .or_default()
-                    .push((edge, Sense::Against));
+                add([a, b], edge, Sense::Along);
+                add([b, a], edge, Sense::Against);
             }
         }
         edges
@@ -126,7 +134,7 @@ impl Sides<'_> {
     fn pair(
         &self,
         crowd: &[Side],
-        edges: &HashMap<[u32; 2], Vec<(EdgeId, Sense)>>,
+        edges: &HashMap<[u32; 2], Vec<DirectedEdge>>,
         twins: &mut [Side],
     ) -> Result<(), MeshError> {
         let topology = &self.brep.topology;
@@ -139,7 +147,7 @@ impl Sides<'_> {
         let mut side_of: HashMap<CoedgeId, Side> = HashMap::new();
         for &side in crowd {
             let along = edges.get(&ends(self.mesh, side)).into_iter().flatten();
-            let mut fitting = along.flat_map(|&(edge, sense)| {
+            let mut fitting = along.flat_map(|&DirectedEdge { edge, sense }| {
                 let around = topology.edge(edge).coedges.iter().copied();
                 around.filter(move |&c| {
                     topology.coedge(c).sense == sense && topology.face_of(c) == face(side)

@@ -27,6 +27,15 @@ impl HalfEdge {
     }
 }
 
+/// The vertex of an edge at which a seam meets it.
+struct SeamJoint {
+    /// The half that ends there.
+    before: HalfEdge,
+    /// The half that starts there.
+    after: HalfEdge,
+    vertex: usize,
+}
+
 /// The boundary with seams, under construction.
 struct Linking<'a, 'p> {
     brep: &'a Brep,
@@ -142,8 +151,8 @@ impl<'a> Linking<'a, '_> {
         }
     }
 
-    /// The halves of a coedge that end and start where a seam meets it, and the vertex there.
-    fn around(&self, coedge: CoedgeId, t: f64) -> ([HalfEdge; 2], usize) {
+    /// The joint of a coedge at which a seam meets it.
+    fn joint(&self, coedge: CoedgeId, t: f64) -> SeamJoint {
         let pair = self.pairs.edge_of[&coedge];
         let [lo, hi] = self.brep.range(self.brep.topology.coedge(coedge).edge);
         let is_open = self.pairs.ends[pair].is_some();
@@ -164,11 +173,18 @@ impl<'a> Linking<'a, '_> {
         let [before, after] = [(after + count - 1) % count, after].map(|k| parts.start + k);
         let vertex = self.seamed.edges[after].ends[0];
         let sense = self.brep.topology.coedge(coedge).sense;
-        let halves = match sense {
+        let [before, after] = match sense {
             Sense::Along => [before, after],
             Sense::Against => [after, before],
         };
-        (halves.map(|edge| HalfEdge { edge, sense }), vertex)
+        SeamJoint {
+            before: HalfEdge {
+                edge: before,
+                sense,
+            },
+            after: HalfEdge { edge: after, sense },
+            vertex,
+        }
     }
 
     /// Adds a face, or its pieces if its seams divide it.
@@ -220,59 +236,80 @@ impl<'a> Linking<'a, '_> {
         next: &mut HashMap<HalfEdge, HalfEdge>,
         order: &mut Vec<HalfEdge>,
     ) {
-        let mut crossing: Option<usize> = None;
-        // At a crossing: the edges from below and from the left, and those upwards and to the
-        // right.
-        let mut star: [Option<usize>; 4] = [None; 4];
+        let mut star = SeamCrossing::default();
         for seam in &cut.seams {
             let edge = self.seamed.edges.len();
-            let (there, back) = (HalfEdge::along(edge), HalfEdge::against(edge));
-            order.extend([there, back]);
-            let mut ends = [0; 2];
-            for (k, end) in seam.ends.iter().enumerate() {
-                // Towards this end, and away from it.
-                let [to, from] = if k == 1 { [there, back] } else { [back, there] };
-                ends[k] = match *end {
-                    End::Edge { coedge, t } => {
-                        let ([before, after], vertex) = self.around(coedge, t);
-                        next.insert(before, from);
-                        next.insert(to, after);
-                        vertex
-                    }
-                    End::Pole(p) => {
-                        next.insert(to, from);
-                        self.seamed.vertex(p)
-                    }
-                    End::Crossing => {
-                        star[seam.across + 2 * (1 - k)] = Some(edge);
-                        *crossing.get_or_insert_with(|| {
-                            let p = seam.curve.point(seam.range[k]);
-                            self.seamed.vertex(p)
-                        })
-                    }
-                };
-            }
+            order.extend([HalfEdge::along(edge), HalfEdge::against(edge)]);
+            let ends = [0, 1].map(|k| self.add_seam_end(seam, k, edge, next, &mut star));
             self.seamed.edges.push(seam_edge(seam, ends));
         }
-        let [below, left, above, right] = star;
-        if let (Some(below), Some(left), Some(above), Some(right)) = (below, left, above, right) {
-            // As seen from outside: left if it is also to the left of the surface's normal.
-            let turns = match self.brep.sense(face) {
-                Sense::Along => [
-                    (HalfEdge::along(below), HalfEdge::against(left)),
-                    (HalfEdge::along(left), HalfEdge::along(above)),
-                    (HalfEdge::against(above), HalfEdge::along(right)),
-                    (HalfEdge::against(right), HalfEdge::against(below)),
-                ],
-                Sense::Against => [
-                    (HalfEdge::along(below), HalfEdge::along(right)),
-                    (HalfEdge::along(left), HalfEdge::against(below)),
-                    (HalfEdge::against(above), HalfEdge::against(left)),
-                    (HalfEdge::against(right), HalfEdge::along(above)),
-                ],
-            };
-            next.extend(turns);
+        next.extend(star.turns(self.brep.sense(face)).into_iter().flatten());
+    }
+
+    /// Routes loops around an end of a seam, and returns the vertex there.
+    fn add_seam_end(
+        &mut self,
+        seam: &Seam,
+        k: usize,
+        edge: usize,
+        next: &mut HashMap<HalfEdge, HalfEdge>,
+        star: &mut SeamCrossing,
+    ) -> usize {
+        let (there, back) = (HalfEdge::along(edge), HalfEdge::against(edge));
+        // Towards this end, and away from it.
+        let [to, from] = if k == 1 { [there, back] } else { [back, there] };
+        match seam.ends[k] {
+            End::Edge { coedge, t } => {
+                let joint = self.joint(coedge, t);
+                next.insert(joint.before, from);
+                next.insert(to, joint.after);
+                joint.vertex
+            }
+            End::Pole(p) => {
+                next.insert(to, from);
+                self.seamed.vertex(p)
+            }
+            End::Crossing => {
+                star.edges[seam.across + 2 * (1 - k)] = Some(edge);
+                *star.vertex.get_or_insert_with(|| {
+                    let p = seam.curve.point(seam.range[k]);
+                    self.seamed.vertex(p)
+                })
+            }
         }
+    }
+}
+
+/// The crossing of two seams.
+#[derive(Default)]
+struct SeamCrossing {
+    vertex: Option<usize>,
+    /// The edges from below and from the left, and those upwards and to the right.
+    edges: [Option<usize>; 4],
+}
+
+impl SeamCrossing {
+    /// The turns of loops at the crossing, each from one half to the next; `sense` is that of the
+    /// face.
+    fn turns(&self, sense: Sense) -> Option<[(HalfEdge, HalfEdge); 4]> {
+        let [Some(below), Some(left), Some(above), Some(right)] = self.edges else {
+            return None;
+        };
+        // As seen from outside: left if it is also to the left of the surface's normal.
+        Some(match sense {
+            Sense::Along => [
+                (HalfEdge::along(below), HalfEdge::against(left)),
+                (HalfEdge::along(left), HalfEdge::along(above)),
+                (HalfEdge::against(above), HalfEdge::along(right)),
+                (HalfEdge::against(right), HalfEdge::against(below)),
+            ],
+            Sense::Against => [
+                (HalfEdge::along(below), HalfEdge::along(right)),
+                (HalfEdge::along(left), HalfEdge::against(below)),
+                (HalfEdge::against(above), HalfEdge::against(left)),
+                (HalfEdge::against(right), HalfEdge::along(above)),
+            ],
+        })
     }
 }
 

@@ -12,10 +12,10 @@ use crate::parameters::{ParameterWindow, turned, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{FaceLocator, PointLocation};
-use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
+use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
 use premio_kernel::geometry::curve::{Circle, Curve};
-use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::surface::{Cone, Cylinder, Surface, Torus};
 use std::f64::consts::TAU;
 
 /// The cut of a face.
@@ -53,6 +53,29 @@ pub(super) enum End {
     Pole(Point3<f64>),
     /// The crossing of the two seams of a torus inside the face.
     Crossing,
+}
+
+/// An end of a piece of a track in a face.
+#[derive(Clone, Copy)]
+struct TrackEnd {
+    /// The parameter of the track's curve.
+    t: f64,
+    end: End,
+}
+
+/// A point at which a track enters or leaves a face.
+#[derive(Clone, Copy)]
+struct TrackStop {
+    passage: CrossingSense,
+    at: TrackEnd,
+}
+
+/// The part of a track along which an arc runs.
+enum Coverage {
+    Nothing,
+    /// Between two parameters of the track's curve.
+    Range([f64; 2]),
+    Everything,
 }
 
 struct Faced<'a> {
@@ -139,10 +162,9 @@ impl Faced<'_> {
             false => self.unless_parted(&whole, 0, least(found))?,
         };
         if let Surface::Torus(_) = surface {
-            let along = |v: f64| Some((v, self.seams(&cut.window.surface, 1, v)?));
             let candidates = self.samples.candidates(&cut.window, 1);
             let found = candidates.into_iter().map(|v| {
-                let (v, seams) = along(v)?;
+                let seams = self.seams(&cut.window.surface, 1, v)?;
                 let window = ParameterWindow {
                     starts: [0.0, v],
                     ..cut.window
@@ -227,40 +249,50 @@ impl Faced<'_> {
         if crossings.iter().any(|c| is_clear(c.at)) {
             return false;
         }
-        let parameter = |p: &Point3<f64>| track.curve.parameter(p);
-        let near = |p: &Point3<f64>| {
-            let on = track.curve.point(parameter(p));
-            (on - p).norm() <= self.resolution
-        };
         let passed = crossings.iter().map(|c| match track.course {
             Course::Round => (track.start + c.at * track.by).rem_euclid(TAU),
             Course::Open { .. } => track.start + c.at * track.by,
         });
         let mut covered: Vec<[f64; 2]> = passed.map(|t| [t, t]).collect();
         for arc in &self.arcs {
-            let [lo, hi] = arc.range;
-            let at = |part: f64| arc.curve.point(lo + part * (hi - lo));
-            if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
-                continue;
+            match self.coverage(arc, track) {
+                Coverage::Nothing => {}
+                Coverage::Range(range) => covered.push(range),
+                Coverage::Everything => return true,
             }
-            if (at(0.0) - at(1.0)).norm() <= self.resolution {
-                // All of a circle.
-                return true;
+        }
+        !covered.is_empty() && self.is_outside_between(covered, track)
+    }
+
+    /// The part of a track along which an arc runs.
+    fn coverage(&self, arc: &DirectedArc<'_>, track: &Track) -> Coverage {
+        let parameter = |p: &Point3<f64>| track.curve.parameter(p);
+        let near = |p: &Point3<f64>| {
+            let on = track.curve.point(parameter(p));
+            (on - p).norm() <= self.resolution
+        };
+        let [lo, hi] = arc.range;
+        let at = |part: f64| arc.curve.point(lo + part * (hi - lo));
+        if ![0.13, 0.37, 0.5, 0.81].iter().all(|part| near(&at(*part))) {
+            return Coverage::Nothing;
+        }
+        if (at(0.0) - at(1.0)).norm() <= self.resolution {
+            // All of a circle.
+            return Coverage::Everything;
+        }
+        // The end that comes first, as the midpoint shows.
+        let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
+        Coverage::Range(match track.course {
+            Course::Open { .. } => [a.min(b), a.max(b)],
+            Course::Round if (m - a).rem_euclid(TAU) < (b - a).rem_euclid(TAU) => {
+                [a, a + (b - a).rem_euclid(TAU)]
             }
-            // The end that comes first, as the midpoint shows.
-            let [a, m, b] = [0.0, 0.5, 1.0].map(|part| parameter(&at(part)));
-            let (a, b) = match track.course {
-                Course::Open { .. } => (a.min(b), a.max(b)),
-                Course::Round if (m - a).rem_euclid(TAU) < (b - a).rem_euclid(TAU) => {
-                    (a, a + (b - a).rem_euclid(TAU))
-                }
-                Course::Round => (b, b + (a - b).rem_euclid(TAU)),
-            };
-            covered.push([a, b]);
-        }
-        if covered.is_empty() {
-            return false;
-        }
+            Course::Round => [b, b + (a - b).rem_euclid(TAU)],
+        })
+    }
+
+    /// Whether a track is outside the face wherever edges do not cover it.
+    fn is_outside_between(&self, mut covered: Vec<[f64; 2]>, track: &Track) -> bool {
         let poles = match track.course {
             Course::Round => [None, None],
             Course::Open { first, last } => [first, last],
@@ -296,10 +328,10 @@ impl Faced<'_> {
         let tracks = self.tracks(surface, across, at);
         tracks.iter().find_map(|track| {
             let pieces = self.pieces(surface, track)?;
-            let seam = |[a, b]: [(f64, End); 2]| Seam {
+            let seam = |[a, b]: [TrackEnd; 2]| Seam {
                 curve: track.curve.clone(),
-                range: [a.0, if b.0 > a.0 { b.0 } else { b.0 + TAU }],
-                ends: [a.1, b.1],
+                range: [a.t, if b.t > a.t { b.t } else { b.t + TAU }],
+                ends: [a.end, b.end],
                 across,
             };
             Some(pieces.into_iter().map(seam).collect())
@@ -308,35 +340,10 @@ impl Faced<'_> {
 
     /// The line of a constant angle; from several starting points if it closes.
     fn tracks(&self, surface: &Surface, across: usize, at: f64) -> Vec<Track> {
-        let f = surface.frame();
         match surface {
             Surface::Plane(_) => Vec::new(),
-            Surface::Cylinder(s) => {
-                let heights = self.samples.points().map(|p| f.coordinates(p).z);
-                let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
-                let from = f.point(s.radius, 0.0, lowest);
-                let course = Course::Open {
-                    first: None,
-                    last: None,
-                };
-                ruling(surface, from, course).into_iter().collect()
-            }
-            Surface::Cone(s) => {
-                // If edges end at the apex, it starts above the apex.
-                let slants = self.samples.points().map(|p| (p - f.origin).norm());
-                let nearest = slants
-                    .filter(|d| *d > self.resolution)
-                    .fold(f64::INFINITY, f64::min);
-                let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
-                let is_free = !self.samples.points().any(at_apex);
-                let slant = if is_free { 0.0 } else { 0.25 * nearest };
-                let from = f.point(slant * s.sin, 0.0, slant * s.cos);
-                let course = Course::Open {
-                    first: is_free.then_some(0.0),
-                    last: None,
-                };
-                ruling(surface, from, course).into_iter().collect()
-            }
+            Surface::Cylinder(s) => self.cylinder_track(surface, s).into_iter().collect(),
+            Surface::Cone(s) => self.cone_track(surface, s).into_iter().collect(),
             Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
             Surface::Torus(s) => {
                 let window = ParameterWindow {
@@ -347,67 +354,73 @@ impl Faced<'_> {
                 let mut from = self.samples.candidates(&window, 1 - across);
                 from.truncate(STARTS);
                 let tracks = from.into_iter().filter_map(|other| match across {
-                    0 => Some(Track {
-                        walk: SurfacePath::tube(s, &surface.point(at, other), Sense::Along),
-                        curve: tube(surface, s.major, s.minor),
-                        start: other,
-                        by: 1.0 / s.minor,
-                        course: Course::Round,
-                    }),
-                    _ => {
-                        let from = surface.point(other, at);
-                        let radius = s.major + s.minor * at.cos();
-                        let centre = f.origin + f.z * (s.minor * at.sin());
-                        let frame = f.at(centre);
-                        Some(Track {
-                            walk: SurfacePath::parallel(
-                                surface,
-                                &from,
-                                Sense::Along,
-                                self.resolution,
-                            )?,
-                            curve: Curve::Circle(Circle { frame, radius }),
-                            start: other,
-                            by: 1.0 / radius,
-                            course: Course::Round,
-                        })
-                    }
+                    0 => Some(tube_track(surface, s, at, other)),
+                    _ => self.parallel_track(surface, s, at, other),
                 });
                 tracks.collect()
             }
         }
     }
 
-    /// The pieces of a track in the face: the curve's parameter at each end, and the kind of end.
-    fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[(f64, End); 2]>> {
-        let side = self.brep.sense(self.face);
-        let crossings = track
-            .walk
-            .crossings(surface, side, &self.arcs, self.resolution);
-        let mut stops: Vec<(CrossingSense, f64, End)> = Vec::new();
-        for c in &crossings {
-            let end = End::Edge {
-                coedge: self.coedges[c.arc],
-                t: c.t,
-            };
-            stops.push((c.passage, track.start + c.at * track.by, end));
-        }
-        // Where the face touches itself, the track leaves it before entering it again.
-        for k in 1..stops.len() {
-            let (before, after) = (stops[k - 1], stops[k]);
-            let together = (after.1 - before.1).abs() <= self.resolution * track.by;
-            if together && (before.0, after.0) == (CrossingSense::Entering, CrossingSense::Leaving)
-            {
-                stops.swap(k - 1, k);
-            }
-        }
+    /// The ruling of a cylinder, from below the face.
+    fn cylinder_track(&self, surface: &Surface, s: &Cylinder) -> Option<Track> {
+        let heights = self.samples.points().map(|p| s.frame.coordinates(p).z);
+        let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
+        let from = s.frame.point(s.radius, 0.0, lowest);
+        let course = Course::Open {
+            first: None,
+            last: None,
+        };
+        ruling(surface, from, course)
+    }
+
+    /// The ruling of a cone, from its apex. If edges end at the apex, it starts above the apex.
+    fn cone_track(&self, surface: &Surface, s: &Cone) -> Option<Track> {
+        let f = &s.frame;
+        let slants = self.samples.points().map(|p| (p - f.origin).norm());
+        let nearest = slants
+            .filter(|d| *d > self.resolution)
+            .fold(f64::INFINITY, f64::min);
+        let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
+        let is_free = !self.samples.points().any(at_apex);
+        let slant = if is_free { 0.0 } else { 0.25 * nearest };
+        let from = f.point(slant * s.sin, 0.0, slant * s.cos);
+        let course = Course::Open {
+            first: is_free.then_some(0.0),
+            last: None,
+        };
+        ruling(surface, from, course)
+    }
+
+    /// The parallel of a torus at an angle of the tube, from an angle about the axis.
+    fn parallel_track(&self, surface: &Surface, s: &Torus, at: f64, start: f64) -> Option<Track> {
+        let f = &s.frame;
+        let from = surface.point(start, at);
+        let radius = s.major + s.minor * at.cos();
+        let centre = f.origin + f.z * (s.minor * at.sin());
+        let frame = f.at(centre);
+        Some(Track {
+            walk: SurfacePath::parallel(surface, &from, Sense::Along, self.resolution)?,
+            curve: Curve::Circle(Circle { frame, radius }),
+            start,
+            by: 1.0 / radius,
+            course: Course::Round,
+        })
+    }
+
+    /// The ends of the pieces of a track in the face.
+    fn pieces(&self, surface: &Surface, track: &Track) -> Option<Vec<[TrackEnd; 2]>> {
+        let mut stops = self.stops(surface, track);
         let starts_inside = match stops.first() {
-            Some((passage, ..)) => *passage == CrossingSense::Leaving,
+            Some(stop) => stop.passage == CrossingSense::Leaving,
             None => self.contains(&track.walk.point(1.0 / track.by)),
         };
         match &track.course {
             Course::Round if stops.is_empty() => {
-                let ends = [0.0, TAU].map(|on| (track.start + on, End::Crossing));
+                let ends = [0.0, TAU].map(|on| TrackEnd {
+                    t: track.start + on,
+                    end: End::Crossing,
+                });
                 return Some(if starts_inside {
                     vec![ends]
                 } else {
@@ -420,25 +433,60 @@ impl Faced<'_> {
                 }
             }
             Course::Open { first, last } => {
-                let pole = |t: f64| End::Pole(track.curve.point(t));
+                let pole = |passage: CrossingSense, t: f64| TrackStop {
+                    passage,
+                    at: TrackEnd {
+                        t,
+                        end: End::Pole(track.curve.point(t)),
+                    },
+                };
                 if starts_inside {
-                    let t = (*first)?;
-                    stops.insert(0, (CrossingSense::Entering, t, pole(t)));
+                    stops.insert(0, pole(CrossingSense::Entering, (*first)?));
                 }
                 if stops.len() % 2 == 1 {
-                    let t = (*last)?;
-                    stops.push((CrossingSense::Leaving, t, pole(t)));
+                    stops.push(pole(CrossingSense::Leaving, (*last)?));
                 }
             }
         }
         let pieces = stops.chunks(2).map(|pair| match pair {
-            [
-                (CrossingSense::Entering, a, from),
-                (CrossingSense::Leaving, b, to),
-            ] => Some([(*a, *from), (*b, *to)]),
+            [from, to]
+                if from.passage == CrossingSense::Entering
+                    && to.passage == CrossingSense::Leaving =>
+            {
+                Some([from.at, to.at])
+            }
             _ => None,
         });
         pieces.collect()
+    }
+
+    /// The crossings of a track with the edges of the face, in order.
+    fn stops(&self, surface: &Surface, track: &Track) -> Vec<TrackStop> {
+        let side = self.brep.sense(self.face);
+        let crossings = track
+            .walk
+            .crossings(surface, side, &self.arcs, self.resolution);
+        let stop = |c: &PathCrossing| TrackStop {
+            passage: c.passage,
+            at: TrackEnd {
+                t: track.start + c.at * track.by,
+                end: End::Edge {
+                    coedge: self.coedges[c.arc],
+                    t: c.t,
+                },
+            },
+        };
+        let mut stops: Vec<TrackStop> = crossings.iter().map(stop).collect();
+        // Where the face touches itself, the track leaves it before entering it again.
+        for k in 1..stops.len() {
+            let (before, after) = (stops[k - 1], stops[k]);
+            let together = (after.at.t - before.at.t).abs() <= self.resolution * track.by;
+            let passages = (before.passage, after.passage);
+            if together && passages == (CrossingSense::Entering, CrossingSense::Leaving) {
+                stops.swap(k - 1, k);
+            }
+        }
+        stops
     }
 
     /// The axes of the edges that are circles.
@@ -459,6 +507,17 @@ impl Faced<'_> {
         let surface = self.brep.surface(self.face);
         let (side, arcs) = (self.brep.sense(self.face), self.arcs.clone());
         FaceLocator::new(surface, side, arcs, self.resolution).place(p)
+    }
+}
+
+/// The circle about a torus's tube at an angle about the axis, from an angle of the tube.
+fn tube_track(surface: &Surface, s: &Torus, at: f64, start: f64) -> Track {
+    Track {
+        walk: SurfacePath::tube(s, &surface.point(at, start), Sense::Along),
+        curve: tube(surface, s.major, s.minor),
+        start,
+        by: 1.0 / s.minor,
+        course: Course::Round,
     }
 }
 

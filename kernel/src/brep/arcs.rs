@@ -2,7 +2,7 @@
 //! path may intersect.
 
 use super::surface_path::{DirectedArc, SurfacePath};
-use crate::geometry::bounds::{Aabb, bounds, pieces};
+use crate::geometry::bounds::{Aabb, CurvePiece, bounds, pieces};
 use crate::geometry::curve::Curve;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
@@ -57,9 +57,9 @@ fn parts<N: Float>(arc: &DirectedArc<'_, N>, resolution: N) -> Vec<Part<N>> {
     let (Curve::Quartic(_) | Curve::Toric(_)) = arc.curve else {
         return Vec::new();
     };
-    let grown = |(range, b): ([N; 2], Aabb)| Part {
-        range,
-        bounds: b.grown(resolution),
+    let grown = |piece: CurvePiece<N>| Part {
+        range: piece.range,
+        bounds: piece.bounds.grown(resolution),
     };
     let all = pieces(arc.curve, arc.range);
     all.into_iter().map(grown).collect()

@@ -5,7 +5,7 @@
 //! and solids: `shells`. Points where several of these touch: `non_manifold_points`.
 
 use super::assembly_error::AssemblyError;
-use super::boundary_input::{BoundaryInput, FaceUse, Names};
+use super::boundary_input::{BoundaryInput, FaceUse, Names, SurfaceSide};
 use super::non_manifold_points::touches;
 use super::region::regions;
 use super::shells::{bind_shells, fans};
@@ -58,10 +58,32 @@ struct Half {
     face_use: FaceUse,
 }
 
-type Group = (usize, Sense);
+/// An end of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+struct End {
+    edge: usize,
+    /// Whether it is the edge's first end.
+    first: bool,
+}
 
-/// An edge, and whether its first end is meant.
-type End = (usize, bool);
+/// An end of an edge, and the angle at which it leaves a vertex.
+struct EndAngle<N: Float = f64> {
+    angle: N,
+    end: End,
+}
+
+/// The corner of a side of a surface at a vertex.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct FaceCorner {
+    vertex: usize,
+    side: SurfaceSide,
+}
+
+/// The boundary without its shells, solids and touches.
+struct Unbound<N: Float = f64> {
+    brep: Brep<N>,
+    names: Names,
+}
 
 struct Assembler<'a, N: Float = f64> {
     raw: &'a BoundaryInput<N>,
@@ -85,19 +107,19 @@ pub fn assemble<N: Float>(
     assembler.link()?;
     let rings = assembler.rings();
     let faces = assembler.faces(&rings)?;
-    let (mut brep, names) = assembler.brep(&rings, &faces);
+    let Unbound { mut brep, names } = assembler.brep(&rings, &faces);
     let fans = fans(&brep.topology, &names.partner);
     bind_shells(&mut brep, &fans, predicates)?;
-    for (place, touch) in touches(&brep, &raw, &names, &fans, predicates) {
-        brep.geometry.touches.push(place);
-        brep.topology.touches.push(touch);
+    for found in touches(&brep, &raw, &names, &fans, predicates) {
+        brep.geometry.touches.push(found.place);
+        brep.topology.touches.push(found.touch);
     }
     Ok(brep)
 }
 
-/// A face: its group and its loops.
+/// A face: its side of the surface and its loops.
 struct Region {
-    group: Group,
+    side: SurfaceSide,
     rings: Vec<usize>,
     euler: i32,
 }
@@ -129,28 +151,28 @@ impl<'a, N: Float> Assembler<'a, N> {
 
     /// Finds the successor of every half.
     fn link(&mut self) -> Result<(), AssemblyError> {
-        // Per vertex and group: the incoming and the outgoing halves.
-        let mut meeting: BTreeMap<(usize, Group), [Vec<usize>; 2]> = BTreeMap::new();
+        // Per vertex and side: the incoming and the outgoing halves.
+        let mut meeting: BTreeMap<FaceCorner, [Vec<usize>; 2]> = BTreeMap::new();
         for i in 0..self.halves.len() {
-            let w = self.halves[i].face_use;
+            let side = self.halves[i].face_use.side();
+            let corner = |vertex: usize| FaceCorner { vertex, side };
             match (self.end(i, false), self.end(i, true)) {
                 (Some(start), Some(end)) => {
-                    let group = (w.surface, w.outward);
-                    meeting.entry((end, group)).or_default()[0].push(i);
-                    meeting.entry((start, group)).or_default()[1].push(i);
+                    meeting.entry(corner(end)).or_default()[0].push(i);
+                    meeting.entry(corner(start)).or_default()[1].push(i);
                 }
                 _ => self.next[i] = i,
             }
         }
-        for ((vertex, group), [into, out]) in meeting {
+        for (corner, [into, out]) in meeting {
             if into.len() != out.len() {
                 return Err(AssemblyError::OpenLoop {
-                    place: rounded(&self.raw.points[vertex].place),
+                    place: rounded(&self.raw.points[corner.vertex].place),
                 });
             }
             match (&into[..], &out[..]) {
                 ([i], [o]) => self.next[*i] = *o,
-                _ => self.link_by_angle(vertex, group, &into, &out)?,
+                _ => self.link_by_angle(corner, &into, &out)?,
             }
         }
         Ok(())
@@ -158,17 +180,16 @@ impl<'a, N: Float> Assembler<'a, N> {
 
     fn link_by_angle(
         &mut self,
-        vertex: usize,
-        group: Group,
+        corner: FaceCorner,
         into: &[usize],
         out: &[usize],
     ) -> Result<(), AssemblyError> {
-        let back = |&i: &usize| (self.halves[i].edge, self.at_first_end(i, true));
-        let away = |&o: &usize| (self.halves[o].edge, self.at_first_end(o, false));
+        let back = |&i: &usize| self.edge_end(i, true);
+        let away = |&o: &usize| self.edge_end(o, false);
         let mut ends: Vec<End> = into.iter().map(back).chain(out.iter().map(away)).collect();
         ends.sort_unstable();
         ends.dedup();
-        let order = self.order(vertex, group, ends)?;
+        let order = self.order(corner, ends)?;
         let n = order.len();
         let rank: HashMap<End, usize> = order.into_iter().zip(0..).collect();
         let follower = |i: &usize| {
@@ -184,28 +205,25 @@ impl<'a, N: Float> Assembler<'a, N> {
         followers.dedup();
         if followers.len() != into.len() {
             return Err(AssemblyError::AmbiguousVertex {
-                place: rounded(&self.raw.points[vertex].place),
+                place: rounded(&self.raw.points[corner.vertex].place),
             });
         }
         Ok(())
     }
 
-    /// Whether a half's end (`at_end`) or start is its edge's first end.
-    fn at_first_end(&self, half: usize, at_end: bool) -> bool {
-        at_end != (self.halves[half].face_use.sense == Sense::Along)
+    /// The end of its edge at which a half ends (`at_end`) or starts.
+    fn edge_end(&self, half: usize, at_end: bool) -> End {
+        let Half { edge, face_use } = self.halves[half];
+        let first = at_end != (face_use.sense == Sense::Along);
+        End { edge, first }
     }
 
     /// Sorts edge ends around a vertex, counterclockwise seen from outside, by their intersections
     /// with a small sphere around it. Ends that are tangent and cannot be separated on one sphere
     /// are sorted on a wider one, which only they need to reach.
-    fn order(
-        &self,
-        vertex: usize,
-        group: Group,
-        ends: Vec<End>,
-    ) -> Result<Vec<End>, AssemblyError> {
-        let v = self.raw.points[vertex].place;
-        let frame = self.tangent_frame(group, &v);
+    fn order(&self, corner: FaceCorner, ends: Vec<End>) -> Result<Vec<End>, AssemblyError> {
+        let v = self.raw.points[corner.vertex].place;
+        let frame = self.tangent_frame(corner.side, &v);
         let mut bundles = vec![ends];
         while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
             let parts = self.separated(&v, &frame, &bundles[at]);
@@ -230,7 +248,10 @@ impl<'a, N: Float> Assembler<'a, N> {
             let angle = |&end: &End| {
                 let p = self.point_at(end, along, v, radius);
                 let d = frame.components(&(p - v));
-                (d.y.atan2(d.x), end)
+                EndAngle {
+                    angle: d.y.atan2(d.x),
+                    end,
+                }
             };
             let least = self.predicates.resolution::<N>() / radius * clear + N::ROUNDING;
             let bundles = bundled(ends.iter().map(angle).collect(), least);
@@ -244,18 +265,18 @@ impl<'a, N: Float> Assembler<'a, N> {
         best
     }
 
-    fn tangent_frame(&self, (surface, outward): Group, v: &Point3<N>) -> Frame<N> {
-        let s = &self.raw.surfaces[surface];
+    fn tangent_frame(&self, side: SurfaceSide, v: &Point3<N>) -> Frame<N> {
+        let s = &self.raw.surfaces[side.surface];
         let normal = match s {
             // At the apex the rulings are sorted around the axis.
             Surface::Cone(c) if self.predicates.within((v - c.frame.origin).length()) => -c.frame.z,
             _ => s.normal(v),
         };
-        Frame::about(*v, normal * outward.sign::<N>())
+        Frame::about(*v, normal * side.outward.sign::<N>())
     }
 
     /// The parameters at one of an edge's ends, and at a fraction `along` of its range from there.
-    fn stretch(&self, (edge, first): End, along: N) -> [N; 2] {
+    fn stretch(&self, End { edge, first }: End, along: N) -> [N; 2] {
         let [lo, hi] = self.raw.edges[edge].range;
         match first {
             true => [lo, lo + (hi - lo) * along],
@@ -266,13 +287,13 @@ impl<'a, N: Float> Assembler<'a, N> {
     /// The point of an edge at a fraction of its range from one of its ends.
     fn point_along(&self, end: End, along: N) -> Point3<N> {
         let [_, t] = self.stretch(end, along);
-        self.raw.curves[self.raw.edges[end.0].curve].point(t)
+        self.raw.curves[self.raw.edges[end.edge].curve].point(t)
     }
 
     /// The point of an edge at a distance from the vertex at one of its ends, within a fraction of
     /// its range.
     fn point_at(&self, end: End, along: N, v: &Point3<N>, radius: N) -> Point3<N> {
-        let curve = &self.raw.curves[self.raw.edges[end.0].curve];
+        let curve = &self.raw.curves[self.raw.edges[end.edge].curve];
         let [start, far] = self.stretch(end, along);
         let gap = |t: N| (curve.point(t) - v).length() - radius;
         let t = match start.is_short_of(far) {
@@ -313,35 +334,35 @@ impl<'a, N: Float> Assembler<'a, N> {
 
     /// Groups the loops of each surface into faces.
     fn faces(&self, rings: &[Vec<usize>]) -> Result<Vec<Region>, AssemblyError> {
-        let mut groups: BTreeMap<Group, Vec<usize>> = BTreeMap::new();
+        let mut sides: BTreeMap<SurfaceSide, Vec<usize>> = BTreeMap::new();
         for (i, ring) in rings.iter().enumerate() {
-            let w = self.halves[ring[0]].face_use;
-            groups.entry((w.surface, w.outward)).or_default().push(i);
+            let side = self.halves[ring[0]].face_use.side();
+            sides.entry(side).or_default().push(i);
         }
         let mut faces = Vec::new();
-        for (group, list) in groups {
+        for (side, list) in sides {
             let arcs: Vec<Vec<DirectedArc<'_, N>>> = list
                 .iter()
                 .map(|&r| rings[r].iter().map(|&h| self.arc(h)).collect())
                 .collect();
-            let surface = &self.raw.surfaces[group.0];
-            for region in regions(surface, group.1, &arcs, self.predicates.resolution())? {
+            let surface = &self.raw.surfaces[side.surface];
+            let resolution = self.predicates.resolution();
+            for region in regions(surface, side.outward, &arcs, resolution)? {
                 let rings = region.loops.iter().map(|&k| list[k]).collect();
                 faces.push(Region {
-                    group,
+                    side,
                     rings,
                     euler: region.euler,
                 });
             }
         }
-        for &(surface, outward) in &self.raw.whole {
-            let euler = if matches!(self.raw.surfaces[surface], Surface::Torus(_)) {
-                0
-            } else {
-                2
+        for &side in &self.raw.whole {
+            let euler = match self.raw.surfaces[side.surface] {
+                Surface::Torus(_) => 0,
+                _ => 2,
             };
             faces.push(Region {
-                group: (surface, outward),
+                side,
                 rings: Vec::new(),
                 euler,
             });
@@ -350,13 +371,32 @@ impl<'a, N: Float> Assembler<'a, N> {
     }
 
     /// All entities except shells, solids and touches, and their ids.
-    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> (Brep<N>, Names) {
+    fn brep(&self, rings: &[Vec<usize>], faces: &[Region]) -> Unbound<N> {
+        let mut brep = Brep {
+            topology: Topology::default(),
+            geometry: BrepGeometry::default(),
+        };
+        let vertex_of = self.add_edges(&mut brep);
+        self.add_coedges(&mut brep.topology);
+        let surface_of = self.add_faces(rings, faces, &mut brep);
+        let partner = (0..self.halves.len()).map(|i| {
+            let place = i - self.first[self.halves[i].edge];
+            CoedgeId((self.first[self.halves[i].edge] + (place ^ 1)) as u32)
+        });
+        let names = Names {
+            partner: partner.collect(),
+            vertex_of,
+            surface_of,
+        };
+        Unbound { brep, names }
+    }
+
+    /// Adds the edges with their curves and vertices. Returns the vertex id of each point.
+    fn add_edges(&self, brep: &mut Brep<N>) -> HashMap<usize, VertexId> {
         let raw = self.raw;
-        let mut topology = Topology::default();
-        let mut geometry = BrepGeometry::default();
+        let Brep { topology, geometry } = brep;
         let mut vertex_of: HashMap<usize, VertexId> = HashMap::new();
         let mut curve_of: HashMap<usize, usize> = HashMap::new();
-        let mut surface_of: HashMap<usize, usize> = HashMap::new();
         for e in &raw.edges {
             let mut vertex = |v: usize| {
                 *vertex_of.entry(v).or_insert_with(|| {
@@ -380,6 +420,11 @@ impl<'a, N: Float> Assembler<'a, N> {
             });
         }
         topology.vertices = geometry.points.len() as u32;
+        vertex_of
+    }
+
+    /// Adds the coedges, which have no loops yet.
+    fn add_coedges(&self, topology: &mut Topology) {
         let unowned = LoopId(u32::MAX);
         for (i, h) in self.halves.iter().enumerate() {
             topology.edges[h.edge].coedges.push(CoedgeId(i as u32));
@@ -390,14 +435,27 @@ impl<'a, N: Float> Assembler<'a, N> {
                 owner: unowned,
             });
         }
+    }
+
+    /// Adds the faces with their surfaces and loops. Returns the surface index of each input
+    /// surface.
+    fn add_faces(
+        &self,
+        rings: &[Vec<usize>],
+        faces: &[Region],
+        brep: &mut Brep<N>,
+    ) -> HashMap<usize, usize> {
+        let Brep { topology, geometry } = brep;
+        let mut surface_of: HashMap<usize, usize> = HashMap::new();
         for region in faces {
-            let surface = *surface_of.entry(region.group.0).or_insert_with(|| {
-                geometry.surfaces.push(raw.surfaces[region.group.0]);
+            let SurfaceSide { surface, outward } = region.side;
+            let surface = *surface_of.entry(surface).or_insert_with(|| {
+                geometry.surfaces.push(self.raw.surfaces[surface]);
                 geometry.surfaces.len() - 1
             });
             geometry.patches.push(FaceGeometry {
                 surface,
-                sense: region.group.1,
+                sense: outward,
             });
             let face = FaceId(topology.faces.len() as u32);
             let mut loops = Vec::new();
@@ -410,34 +468,24 @@ impl<'a, N: Float> Assembler<'a, N> {
                 let coedges = rings[r].iter().map(|&h| CoedgeId(h as u32)).collect();
                 topology.loops.push(Loop { coedges, face });
             }
-            let shell = ShellId(u32::MAX);
             topology.faces.push(Face {
                 loops,
-                shell,
+                shell: ShellId(u32::MAX),
                 euler: region.euler,
             });
         }
-        let partner = (0..self.halves.len()).map(|i| {
-            let place = i - self.first[self.halves[i].edge];
-            CoedgeId((self.first[self.halves[i].edge] + (place ^ 1)) as u32)
-        });
-        let names = Names {
-            partner: partner.collect(),
-            vertex_of,
-            surface_of,
-        };
-        (Brep { topology, geometry }, names)
+        surface_of
     }
 }
 
 /// Sorts edge ends by angle, starting at the widest gap, into bundles separated by more than
 /// `least`.
-fn bundled<N: Float>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
-    angles.sort_by(|a, b| a.0.total_cmp(&b.0));
+fn bundled<N: Float>(mut angles: Vec<EndAngle<N>>, least: N) -> Vec<Vec<End>> {
+    angles.sort_by(|a, b| a.angle.total_cmp(&b.angle));
     let n = angles.len();
     let gap = |i: usize| match i {
-        0 => angles[0].0 + N::TAU - angles[n - 1].0,
-        _ => angles[i].0 - angles[i - 1].0,
+        0 => angles[0].angle + N::TAU - angles[n - 1].angle,
+        _ => angles[i].angle - angles[i - 1].angle,
     };
     let Some(start) = (0..n).max_by(|&a, &b| gap(a).total_cmp(&gap(b))) else {
         return Vec::new();
@@ -445,8 +493,8 @@ fn bundled<N: Float>(mut angles: Vec<(N, End)>, least: N) -> Vec<Vec<End>> {
     let mut bundles: Vec<Vec<End>> = Vec::new();
     for i in (start..n).chain(0..start) {
         match bundles.last_mut() {
-            Some(bundle) if gap(i).is_at_most(least) => bundle.push(angles[i].1),
-            _ => bundles.push(vec![angles[i].1]),
+            Some(bundle) if gap(i).is_at_most(least) => bundle.push(angles[i].end),
+            _ => bundles.push(vec![angles[i].end]),
         }
     }
     bundles

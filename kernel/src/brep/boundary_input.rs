@@ -18,6 +18,16 @@ pub struct FaceUse {
     pub sense: Sense,
 }
 
+impl FaceUse {
+    /// The side of the surface on which the face lies.
+    pub(super) fn side(&self) -> SurfaceSide {
+        SurfaceSide {
+            surface: self.surface,
+            outward: self.outward,
+        }
+    }
+}
+
 /// An edge with the faces around it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeInput<N: Float = f64> {
@@ -58,8 +68,17 @@ pub struct BoundaryInput<N: Float = f64> {
     pub points: Vec<VertexInput<N>>,
     /// The edges.
     pub edges: Vec<EdgeInput<N>>,
-    /// Whole surfaces, with the sense of their outward normal.
-    pub whole: Vec<(usize, Sense)>,
+    /// The surfaces that are faces as a whole.
+    pub whole: Vec<SurfaceSide>,
+}
+
+/// A side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SurfaceSide {
+    /// The index of the surface.
+    pub surface: usize,
+    /// Whether the outward normal is that of the surface.
+    pub outward: Sense,
 }
 
 /// The ids of the entities made from the input.

@@ -2,7 +2,7 @@
 
 use super::Brep;
 use super::cycle_basis;
-use super::end_gaps::gaps_at_ends;
+use super::end_gaps::{EndGap, gaps_at_ends};
 use super::face_integrals::{FaceArea, FaceIntegrals};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use crate::geometry::vector::Length;
@@ -93,17 +93,29 @@ pub enum Violation {
 /// was constructed from two of them, and the others were merged with these within the resolution.
 const PLAY: f64 = 8.0;
 
+/// The distance of an edge from a vertex or a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeGap<N: Float = f64> {
+    /// The point on the edge.
+    pub place: Point3<N>,
+    /// The distance.
+    pub distance: N,
+}
+
 /// The largest distance of an edge from a vertex at its end or from a face, if it exceeds what
-/// merging within the resolution accounts for: the point on the edge, and the distance.
-pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<(Point3<N>, N)> {
+/// merging within the resolution accounts for.
+pub fn worst_gap<N: Float>(brep: &Brep<N>, resolution: N) -> Option<EdgeGap<N>> {
     let t = &brep.topology;
     let gaps = t.edge_ids().flat_map(|id| {
-        let ends = gaps_at_ends(brep, id).map(|(_, place, distance)| (place, distance));
+        let ends = gaps_at_ends(brep, id).map(|gap| EdgeGap {
+            place: gap.place,
+            distance: gap.distance,
+        });
         let faces = t.faces_of(id);
         ends.chain(faces.map(move |face| gap_from_face(brep, id, face)))
     });
-    let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.filter(|gap| !is_accounted(gap.1, resolution))
+    let worst = gaps.max_by(|a, b| a.distance.total_cmp(&b.distance));
+    worst.filter(|gap| !is_accounted(gap.distance, resolution))
 }
 
 /// Whether merging of coincident entities accounts for a distance.
@@ -111,15 +123,19 @@ fn is_accounted<N: Float>(distance: N, resolution: N) -> bool {
     distance.is_within(N::from_f64(PLAY) * resolution)
 }
 
-/// The point of an edge farthest from a face's surface, and its distance.
-fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> (Point3<N>, N) {
+/// The distance of an edge from a face's surface, at the farthest point.
+fn gap_from_face<N: Float>(brep: &Brep<N>, id: EdgeId, face: FaceId) -> EdgeGap<N> {
     let ([lo, hi], curve) = (brep.range(id), brep.curve(id));
     let gaps = (0..=PLACES).map(|k| {
-        let p = curve.point(lo + (hi - lo) * N::whole(k) / N::whole(PLACES));
-        (p, brep.surface(face).distance(&p).abs())
+        let place = curve.point(lo + (hi - lo) * N::whole(k) / N::whole(PLACES));
+        let distance = brep.surface(face).distance(&place).abs();
+        EdgeGap { place, distance }
     });
-    let worst = gaps.max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.unwrap_or((Point3::origin(), N::ZERO))
+    let worst = gaps.max_by(|a, b| a.distance.total_cmp(&b.distance));
+    worst.unwrap_or(EdgeGap {
+        place: Point3::origin(),
+        distance: N::ZERO,
+    })
 }
 
 /// The number of sample points, less one, at which an edge is compared with a face.
@@ -222,7 +238,10 @@ fn check_edges<N: Float>(brep: &Brep<N>, resolution: N, found: &mut Vec<Violatio
         if !paired {
             found.push(Violation::EdgeUse { edge: id });
         }
-        for (vertex, _, distance) in gaps_at_ends(brep, id) {
+        for EndGap {
+            vertex, distance, ..
+        } in gaps_at_ends(brep, id)
+        {
             if !is_accounted(distance, resolution) {
                 found.push(Violation::EdgeEnd {
                     edge: id,
@@ -232,7 +251,7 @@ fn check_edges<N: Float>(brep: &Brep<N>, resolution: N, found: &mut Vec<Violatio
             }
         }
         for face in t.faces_of(id) {
-            let (_, distance) = gap_from_face(brep, id, face);
+            let distance = gap_from_face(brep, id, face).distance;
             if !is_accounted(distance, resolution) {
                 found.push(Violation::EdgeOffFace {
                     edge: id,

@@ -24,11 +24,20 @@ pub fn is_sum_of_cycles(links: &[GraphEdge], edges: &BTreeSet<usize>) -> bool {
     sum == *edges
 }
 
-/// A spanning forest: for each vertex the edge to its parent, and its depth.
+/// A spanning forest.
 struct Forest {
     edges: BTreeSet<usize>,
-    up: BTreeMap<usize, (usize, usize)>,
+    /// By vertex: the way to its parent, if it has one.
+    up: BTreeMap<usize, Upwards>,
+    /// By vertex: its depth.
     depth: BTreeMap<usize, usize>,
+}
+
+/// The way from a vertex of a forest to its parent.
+#[derive(Clone, Copy)]
+struct Upwards {
+    parent: usize,
+    edge: usize,
 }
 
 impl Forest {
@@ -55,7 +64,7 @@ impl Forest {
                     let w = if a == v { b } else { a };
                     if !forest.depth.contains_key(&w) {
                         forest.depth.insert(w, forest.depth[&v] + 1);
-                        forest.up.insert(w, (v, e));
+                        forest.up.insert(w, Upwards { parent: v, edge: e });
                         forest.edges.insert(e);
                         queue.push_back(w);
                     }
@@ -75,8 +84,8 @@ impl Forest {
             } else {
                 &mut b
             };
-            let (parent, e) = self.up[deeper];
-            cycle.insert(e);
+            let Upwards { parent, edge } = self.up[deeper];
+            cycle.insert(edge);
             *deeper = parent;
         }
         cycle

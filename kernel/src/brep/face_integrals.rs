@@ -69,20 +69,19 @@ impl<N: Float> FaceIntegrals<N> {
 
     /// The mass properties of the solid that the boundary encloses.
     pub fn mass(&self, brep: &Brep<N>) -> Mass {
-        let (rough, noise) = self.summed_up(brep);
-        match N::IS_DOUBLE || (SLENDER * rough.volume).is_beyond(noise) {
-            true => rough,
-            false => Self::with(brep, Care::Digits).summed_up(brep).0,
+        let MassEstimate { mass, noise } = self.summed_up(brep);
+        match N::IS_DOUBLE || (SLENDER * mass.volume).is_beyond(noise) {
+            true => mass,
+            false => Self::with(brep, Care::Digits).summed_up(brep).mass,
         }
     }
 
-    /// The mass properties, and the rounding error of the volume.
-    fn summed_up(&self, brep: &Brep<N>) -> (Mass, f64) {
+    /// The mass properties, with the rounding error of the volume.
+    fn summed_up(&self, brep: &Brep<N>) -> MassEstimate {
         let reference = self.whole.reference;
         let (mut area, mut volume, mut first) = (N::ZERO, N::ZERO, Vector3::zeros());
         for (shell, amid) in brep.topology.shells.iter().zip(&self.shells) {
-            let of = shell.faces.iter().map(|&f| (f, self.faces[f.index()]));
-            let m = shell_moments(brep, of);
+            let m = shell_moments(brep, self.moments_of(&shell.faces));
             let enclosed = m[1] / N::from_f64(3.0);
             area += m[0];
             volume += enclosed;
@@ -101,7 +100,18 @@ impl<N: Float> FaceIntegrals<N> {
         };
         let bulk = area * self.whole.size;
         let noise = self.whole.noise(brep, brep.topology.face_ids(), bulk);
-        (mass, noise.rounded())
+        MassEstimate {
+            mass,
+            noise: noise.rounded(),
+        }
+    }
+
+    /// The moments of some faces.
+    fn moments_of(&self, faces: &[FaceId]) -> impl Iterator<Item = FaceMoments<N>> {
+        faces.iter().map(|&face| FaceMoments {
+            face,
+            moments: self.faces[face.index()],
+        })
     }
 
     /// The signed volume that a shell encloses.
@@ -111,8 +121,8 @@ impl<N: Float> FaceIntegrals<N> {
     pub fn enclosed(&self, brep: &Brep<N>, shell: ShellId) -> ShellVolume<N> {
         let faces = &brep.topology.shells[shell.index()].faces;
         let amid = &self.shells[shell.index()];
-        let of = faces.iter().map(|&f| (f, self.faces[f.index()]));
-        let integral = enclosed(brep, faces, shell_moments(brep, of), amid, self.whole.size);
+        let moments = shell_moments(brep, self.moments_of(faces));
+        let integral = enclosed(brep, faces, moments, amid, self.whole.size);
         match N::IS_DOUBLE || integral.is_clear() {
             true => integral,
             false => shell_volume(brep, faces, self.whole.size),
@@ -197,7 +207,10 @@ pub(crate) fn size<N: Float>(brep: &Brep<N>) -> N {
 pub(crate) fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) -> ShellVolume<N> {
     let volume = |care| {
         let amid = Amid::new(brep, faces.iter().copied(), care);
-        let of = faces.iter().map(|&f| (f, moments(brep, f, &amid)));
+        let of = faces.iter().map(|&face| FaceMoments {
+            face,
+            moments: moments(brep, face, &amid),
+        });
         enclosed(brep, faces, shell_moments(brep, of), &amid, size)
     };
     let rough = volume(Care::Doubles);
@@ -225,14 +238,26 @@ fn enclosed<N: Float>(
     }
 }
 
+/// The moments of a face.
+struct FaceMoments<N: Float = f64> {
+    face: FaceId,
+    moments: Moments<N>,
+}
+
+/// Mass properties, and the rounding error of the volume.
+struct MassEstimate {
+    mass: Mass,
+    noise: f64,
+}
+
 /// The moments of a shell from those of its faces. The area is summed without signs, the others
 /// with signs.
 fn shell_moments<N: Float>(
     brep: &Brep<N>,
-    faces: impl Iterator<Item = (FaceId, Moments<N>)>,
+    faces: impl Iterator<Item = FaceMoments<N>>,
 ) -> Moments<N> {
     let mut total = [N::ZERO; 5];
-    for (face, m) in faces {
+    for FaceMoments { face, moments: m } in faces {
         let sign = brep.sense(face).sign::<N>();
         total[0] += m[0];
         for i in 1..5 {

@@ -100,7 +100,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     pub(crate) fn by_gaps(brep: &'a Brep<N>, face: FaceId, size: N) -> Self {
         let edges = brep.topology.edges_of(face);
         let gaps = edges.flat_map(|edge| gaps_at_ends(brep, edge));
-        let apart = gaps.map(|(_, _, gap)| gap).fold(N::ZERO, N::max);
+        let apart = gaps.map(|gap| gap.distance).fold(N::ZERO, N::max);
         let rounding = size * N::from_f64(OFF) * N::ROUNDING;
         Self::from_face(brep, face, rounding + N::TWO * apart)
     }

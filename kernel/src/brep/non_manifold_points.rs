@@ -15,14 +15,20 @@ use crate::number::predicates::Predicates;
 use nalgebra::Point3;
 use std::collections::{HashMap, HashSet};
 
-/// The touches of a boundary, with their locations.
+/// A point at which a boundary touches itself, with its location.
+pub(super) struct PlacedTouch<N: Float = f64> {
+    pub place: Point3<N>,
+    pub touch: NonManifoldPoint,
+}
+
+/// The points at which a boundary touches itself.
 pub(super) fn touches<N: Float>(
     brep: &Brep<N>,
     raw: &BoundaryInput<N>,
     names: &Names,
     fans: &Fans,
     predicates: &Predicates,
-) -> Vec<(Point3<N>, NonManifoldPoint)> {
+) -> Vec<PlacedTouch<N>> {
     let edges = Edges::new(raw, names);
     let faces = Faces::new(brep, predicates.resolution());
     let mut found = Vec::new();
@@ -33,7 +39,10 @@ pub(super) fn touches<N: Float>(
         let bounded = fans + edges_through.len();
         // A face with an edge at the point does not contain it in its interior.
         let open = at.surfaces.iter().filter_map(|s| names.surface_of.get(s));
-        let open = open.filter(|&&s| !edges.bounding.contains(&(point, s)));
+        let open = open.filter(|&&surface| {
+            let on = PointOnSurface { point, surface };
+            !edges.bounding.contains(&on)
+        });
         if bounded + open.clone().count() < 2 {
             continue;
         }
@@ -61,7 +70,8 @@ pub(super) fn touches<N: Float>(
             edges: edges_through,
             faces,
         };
-        found.push((at.place, touch));
+        let place = at.place;
+        found.push(PlacedTouch { place, touch });
     }
     found
 }
@@ -72,7 +82,14 @@ struct Edges {
     /// The edges through each point.
     through: HashMap<usize, Vec<EdgeId>>,
     /// The points, with the surfaces that have a face with an edge there.
-    bounding: HashSet<(usize, usize)>,
+    bounding: HashSet<PointOnSurface>,
+}
+
+/// A point of the input, and a surface.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct PointOnSurface {
+    point: usize,
+    surface: usize,
 }
 
 impl Edges {
@@ -86,7 +103,7 @@ impl Edges {
             for &point in edge.ends.iter().flatten().chain(&edge.passes) {
                 for face_use in &edge.face_uses {
                     let surface = names.surface_of[&face_use.surface];
-                    found.bounding.insert((point, surface));
+                    found.bounding.insert(PointOnSurface { point, surface });
                 }
             }
         }

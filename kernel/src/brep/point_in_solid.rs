@@ -24,10 +24,16 @@ pub fn contains<N: Float>(brep: &Brep<N>, p: &Point3<N>, resolution: N) -> Optio
     Closed::new(brep, &faces, resolution).contains(p)
 }
 
+/// A face with its box.
+struct BoxedFace {
+    face: FaceId,
+    bounds: Aabb,
+}
+
 /// The faces of closed shells, with their boxes.
 pub(super) struct Closed<'a, N: Float> {
     brep: &'a Brep<N>,
-    faces: Vec<(FaceId, Aabb)>,
+    faces: Vec<BoxedFace>,
     /// The box of all faces.
     pub bounds: Aabb,
     resolution: N,
@@ -36,9 +42,12 @@ pub(super) struct Closed<'a, N: Float> {
 impl<'a, N: Float> Closed<'a, N> {
     /// The faces; points within `resolution` of an edge count as on it.
     pub fn new(brep: &'a Brep<N>, faces: &[FaceId], resolution: N) -> Self {
-        let boxed = |&f: &FaceId| (f, face_bounds(brep, f).grown(resolution));
-        let faces: Vec<(FaceId, Aabb)> = faces.iter().map(boxed).collect();
-        let bounds = faces.iter().fold(Aabb::EMPTY, |all, f| all.hull(&f.1));
+        let boxed = |&face: &FaceId| BoxedFace {
+            face,
+            bounds: face_bounds(brep, face).grown(resolution),
+        };
+        let faces: Vec<BoxedFace> = faces.iter().map(boxed).collect();
+        let bounds = faces.iter().fold(Aabb::EMPTY, |all, f| all.hull(&f.bounds));
         Self {
             brep,
             faces,
@@ -79,7 +88,7 @@ impl<'a, N: Float> Closed<'a, N> {
     /// The k-th line through the box, which need not meet the faces. Each passes the middle at
     /// another distance.
     fn line_across(&self, k: u32) -> Line<N> {
-        let b = self.faces[k as usize % self.faces.len()].1;
+        let b = self.faces[k as usize % self.faces.len()].bounds;
         let part = |i: u32| {
             N::from_f64(0.5) + N::from_f64(0.21) * (N::whole(k + 1) * N::whole(i + 2)).sin()
         };
@@ -104,7 +113,11 @@ impl<'a, N: Float> Closed<'a, N> {
     fn crossings(&self, line: &Line<N>, range: [N; 2]) -> Option<Vec<N>> {
         let mut crossed = Vec::new();
         let curve = Curve::Line(*line);
-        for (face, around) in &self.faces {
+        for BoxedFace {
+            face,
+            bounds: around,
+        } in &self.faces
+        {
             if around.along(line, range).is_none() {
                 continue;
             }

@@ -54,6 +54,24 @@ struct Start<N: Float = f64> {
     left: Vector3<N>,
 }
 
+/// What a path over the surface determines.
+struct FollowedPath {
+    /// The loop through which the path entered the region in which it is.
+    inside: Option<usize>,
+    /// The same at the start of the last leg.
+    before: Option<usize>,
+    /// The pairs of loops that bound a common region.
+    joined: Vec<[usize; 2]>,
+}
+
+impl FollowedPath {
+    /// The path with its last region joined to the goal, if it ends in one.
+    fn ended_in(mut self, goal: usize) -> Self {
+        self.joined.extend(self.inside.map(|from| [from, goal]));
+        self
+    }
+}
+
 struct Sorter<'a, N: Float = f64> {
     surface: &'a Surface<N>,
     outward: Sense,
@@ -318,61 +336,89 @@ impl<N: Float> Sorter<'_, N> {
         if !leaves {
             return false;
         }
-        let is_ruled = matches!(self.surface, Surface::Cylinder(_) | Surface::Cone(_));
-        let mut inside = if heading.reaches(N::from_f64(SLANT)) {
-            Some(ring)
-        } else if is_ruled && (-heading).reaches(N::from_f64(SLANT)) {
-            self.twin(arc).map(|twin| self.owner[twin])
-        } else {
+        let Some(inside) = self.entered(ring, arc, heading) else {
             return false;
         };
-        let mut before = inside;
-        let mut pairs = Vec::new();
-        for (k, leg) in legs.iter().enumerate() {
-            before = inside;
-            let Some(crossings) = self.crossings(leg, (k == 0).then_some(arc)) else {
-                return false;
-            };
-            for c in crossings {
-                let passed = self.owner[c.arc];
-                match (inside, c.passage) {
-                    (Some(from), CrossingSense::Leaving) => {
-                        pairs.push((from, passed));
-                        inside = None;
-                    }
-                    (None, CrossingSense::Entering) => inside = Some(passed),
-                    _ => return false,
-                }
-            }
-        }
-        if let (Some(from), [round]) = (inside, legs)
-            && goal.is_none()
-            && round.closes()
-        {
-            // The path returns to its start from the other side: the face bounds itself there.
-            let Some(twin) = self.twin(arc) else {
-                return false;
-            };
-            pairs.push((from, self.owner[twin]));
-        }
-        if let [_, .., round] = legs
-            && goal.is_none()
-            && round.closes()
-        {
-            // The path returns to the start of this leg, which is not on an arc.
-            match (inside, before) {
-                (Some(from), Some(to)) => pairs.push((from, to)),
-                (None, None) => {}
-                _ => return false,
-            }
-        }
-        if let (Some(from), Some(goal)) = (inside, goal) {
-            pairs.push((from, goal));
-        }
-        for (a, b) in pairs {
+        let followed = self.followed(inside, arc, legs);
+        let ended = match goal {
+            Some(goal) => followed.map(|path| path.ended_in(goal)),
+            None => followed.and_then(|path| self.closed(path, arc, legs)),
+        };
+        let Some(path) = ended else {
+            return false;
+        };
+        for [a, b] in path.joined {
             self.join(a, b);
         }
         true
+    }
+
+    /// The loop whose region a path enters first, if it enters one; `None` if the path runs along
+    /// its starting arc.
+    fn entered(&self, ring: usize, arc: usize, heading: N) -> Option<Option<usize>> {
+        let is_ruled = matches!(self.surface, Surface::Cylinder(_) | Surface::Cone(_));
+        if heading.reaches(N::from_f64(SLANT)) {
+            Some(Some(ring))
+        } else if is_ruled && (-heading).reaches(N::from_f64(SLANT)) {
+            Some(self.twin(arc).map(|twin| self.owner[twin]))
+        } else {
+            None
+        }
+    }
+
+    /// Follows the legs of a path that starts in a region; `None` if anything is unclear.
+    fn followed(
+        &self,
+        inside: Option<usize>,
+        arc: usize,
+        legs: &[SurfacePath<N>],
+    ) -> Option<FollowedPath> {
+        let mut path = FollowedPath {
+            inside,
+            before: inside,
+            joined: Vec::new(),
+        };
+        for (k, leg) in legs.iter().enumerate() {
+            path.before = path.inside;
+            for c in self.crossings(leg, (k == 0).then_some(arc))? {
+                let passed = self.owner[c.arc];
+                match (path.inside, c.passage) {
+                    (Some(from), CrossingSense::Leaving) => {
+                        path.joined.push([from, passed]);
+                        path.inside = None;
+                    }
+                    (None, CrossingSense::Entering) => path.inside = Some(passed),
+                    _ => return None,
+                }
+            }
+        }
+        Some(path)
+    }
+
+    /// The path with the regions joined in which it returns to its start, if it does; `None` if
+    /// that is unclear.
+    fn closed(
+        &self,
+        mut path: FollowedPath,
+        arc: usize,
+        legs: &[SurfacePath<N>],
+    ) -> Option<FollowedPath> {
+        match legs {
+            // The path returns to its start from the other side: the face bounds itself there.
+            [round] if round.closes() => {
+                if let Some(from) = path.inside {
+                    path.joined.push([from, self.owner[self.twin(arc)?]]);
+                }
+            }
+            // The path returns to the start of its last leg, which is not on an arc.
+            [_, .., round] if round.closes() => match (path.inside, path.before) {
+                (Some(from), Some(to)) => path.joined.push([from, to]),
+                (None, None) => {}
+                _ => return None,
+            },
+            _ => {}
+        }
+        Some(path)
     }
 
     /// The distance from a path's start within which its starting arc lies.

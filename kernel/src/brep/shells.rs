@@ -129,7 +129,7 @@ pub(super) fn bind_shells<N: Float>(
         brep.topology.shells[s].solid = id;
     }
     outer.sort_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
-    for (void, home) in homes(brep, &voids, &outer, predicates)? {
+    for VoidHome { void, home } in homes(brep, &voids, &outer, predicates)? {
         let solid = brep.topology.shells[home].solid;
         brep.topology.shells[void].solid = solid;
         let shells = &mut brep.topology.solids[solid.index()].shells;
@@ -170,15 +170,23 @@ fn name_shells<N: Float>(
     Ok(volumes)
 }
 
+/// A void, and the outer shell around it.
+struct VoidHome {
+    void: usize,
+    home: usize,
+}
+
 /// The outer shell of each void: the smallest one that contains it. `outer` is sorted by volume.
 fn homes<N: Float>(
     brep: &Brep<N>,
     voids: &[usize],
     outer: &[usize],
     predicates: &Predicates,
-) -> Result<Vec<(usize, usize)>, AssemblyError> {
+) -> Result<Vec<VoidHome>, AssemblyError> {
     if let [only] = outer {
-        return Ok(voids.iter().map(|&void| (void, *only)).collect());
+        let home = *only;
+        let voids = voids.iter().map(|&void| VoidHome { void, home });
+        return Ok(voids.collect());
     }
     if voids.is_empty() {
         return Ok(Vec::new());
@@ -200,13 +208,17 @@ fn homes<N: Float>(
         let last = may.pop();
         for k in may {
             match around[k].enclosing(&hollow) {
-                Some(true) => return Ok((void, outer[k])),
+                Some(true) => {
+                    let home = outer[k];
+                    return Ok(VoidHome { void, home });
+                }
                 Some(false) => {}
                 None => return Err(AssemblyError::OrphanVoid { place: place() }),
             }
         }
         let last = last.ok_or_else(|| AssemblyError::OrphanVoid { place: place() });
-        Ok((void, outer[last?]))
+        let home = outer[last?];
+        Ok(VoidHome { void, home })
     };
     voids.iter().map(|&void| home_of(void)).collect()
 }

@@ -12,8 +12,10 @@ mod reach;
 use super::Brep;
 use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Aabb;
-use crate::geometry::curve::{Circle, Curve};
-use crate::geometry::curve_plane::{line_intersections, section_roots, surface_roots};
+use crate::geometry::curve::{Circle, Curve, Line};
+use crate::geometry::curve_plane::{
+    SectionPlane, line_intersections, section_roots, surface_roots,
+};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::torus_parameter::TorusParameter;
@@ -136,7 +138,7 @@ impl<N: Float> SurfacePath<N> {
             track,
             branch,
             length,
-            reach: Reach::new((start, &normal), &track, &branch, length),
+            reach: Reach::new(start, &normal, &track, &branch, length),
         }
     }
 
@@ -426,13 +428,7 @@ impl<N: Float> SurfacePath<N> {
             found(s.max(N::ZERO), t, passage);
         };
         if let Track::Line(d) = &self.track
-            && line_intersections(
-                arc.curve,
-                arc.range,
-                (&self.start, d),
-                resolution,
-                &mut root,
-            )
+            && line_intersections(arc.curve, arc.range, &self.line(d), resolution, &mut root)
         {
             return;
         }
@@ -456,10 +452,21 @@ impl<N: Float> SurfacePath<N> {
                     );
                 }
                 _ => {
-                    let section = (&self.start, &self.normal);
+                    let section = SectionPlane {
+                        point: &self.start,
+                        normal: &self.normal,
+                    };
                     section_roots(arc.curve, range, section, resolution, &mut root);
                 }
             }
+        }
+    }
+
+    /// The line of a straight path in a direction.
+    fn line(&self, direction: &Vector3<N>) -> Line<N> {
+        Line {
+            origin: self.start,
+            direction: *direction,
         }
     }
 

@@ -3,10 +3,9 @@
 
 mod thirds;
 
-pub(crate) use thirds::Reaches;
+pub(crate) use thirds::{CellPartials, Reaches};
 
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 
 /// The coefficient of each product of a function of the first angle and one of the second, where
 /// the functions are 1, cos, sin, cos 2, sin 2.

@@ -14,8 +14,7 @@
 
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials};
 use super::torus_parameter::TorusParameter;
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
 

@@ -2,9 +2,8 @@
 
 use super::curve::{Curve, Line};
 use super::frame::Frame;
-use crate::number::analytic::Analytic;
 use crate::number::bisection::bisect;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use nalgebra::Point3;
@@ -116,19 +115,34 @@ pub fn bounds<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     }
 }
 
-/// Consecutive pieces of a curve over `range`, each smooth and with an enclosing box.
-pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
+/// A smooth piece of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePiece<N: Float = f64> {
+    /// The range of the parameter.
+    pub range: [N; 2],
+    /// An enclosing box.
+    pub bounds: Aabb,
+}
+
+/// Consecutive pieces of a curve over `range`.
+pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>> {
     if !N::IS_DOUBLE && !has_exact_bounds(curve) {
         return rounded_pieces(curve, [lo, hi]);
     }
     let breaks = curve.breaks(lo, hi);
     let smooth = breaks.windows(2).map(|p| [p[0], p[1]]);
     if has_exact_bounds(curve) {
-        return smooth.map(|p| (p, bounds(curve, p))).collect();
+        let piece = |range: [N; 2]| CurvePiece {
+            range,
+            bounds: bounds(curve, range),
+        };
+        return smooth.map(piece).collect();
     }
     let mut all = Vec::new();
     for p in smooth {
-        enclosed(curve, &[p[0], p[1]], |piece, part| all.push((piece, part)));
+        enclosed(curve, &[p[0], p[1]], |range, bounds| {
+            all.push(CurvePiece { range, bounds });
+        });
     }
     all
 }
@@ -136,18 +150,22 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb
 /// The pieces of a curve in extended precision. The boxes are those of the curve rounded to f64,
 /// enlarged by more than rounding moves the curve; next to a node that is the square root of the
 /// rounding.
-fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<([N; 2], Aabb)> {
+fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>> {
     let mut rounded = pieces(&curve.to_f64(), [lo, hi].map(N::rounded));
-    let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.1));
+    let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
     let far = whole.min.iter().chain(&whole.max);
     let far = far.fold(0.0_f64, |far, x| far.max(x.abs()));
     let growth = f64::ROUNDING.sqrt() * (whole.diagonal() + far);
     let last = rounded.len().saturating_sub(1);
     let all = rounded.drain(..).enumerate();
-    all.map(|(i, ([a, b], part))| {
+    all.map(|(i, piece)| {
+        let [a, b] = piece.range;
         let from = if i == 0 { lo } else { N::from_f64(a) };
         let to = if i == last { hi } else { N::from_f64(b) };
-        ([from, to], part.grown(growth))
+        CurvePiece {
+            range: [from, to],
+            bounds: piece.bounds.grown(growth),
+        }
     })
     .collect()
 }
@@ -222,7 +240,7 @@ fn enclosure<N: Float>(curve: &Curve<N>, range: [N; 2]) -> Aabb {
     let mut all = Aabb::EMPTY;
     if !N::IS_DOUBLE {
         let parts = rounded_pieces(curve, range);
-        return parts.iter().fold(all, |b, p| b.hull(&p.1));
+        return parts.iter().fold(all, |b, p| b.hull(&p.bounds));
     }
     enclosed(curve, &curve.breaks(range[0], range[1]), |_, part| {
         all = all.hull(&part);

@@ -1,7 +1,7 @@
 //! Intersections of a curve with a plane, or with a line on its surface, in closed form where
 //! possible.
 
-use super::curve::Curve;
+use super::curve::{Curve, Line};
 use super::curve_surface::cut;
 use super::frame::Frame;
 use super::quadric_curve::{QuadricCurve, Ruled, Sweep};
@@ -20,18 +20,34 @@ pub fn plane_roots<N: Float>(
     resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
-    let section = (&plane.frame.origin, &plane.frame.z);
+    let section = SectionPlane {
+        point: &plane.frame.origin,
+        normal: &plane.frame.z,
+    };
     section_roots(curve, range, section, resolution, found);
 }
 
-/// Intersects with the plane through a point with a unit normal.
+/// A plane.
+#[derive(Clone, Copy)]
+pub(crate) struct SectionPlane<'a, N: Float = f64> {
+    /// A point of it.
+    pub point: &'a Point3<N>,
+    /// The unit normal.
+    pub normal: &'a Vector3<N>,
+}
+
+/// Intersects with a plane.
 pub(crate) fn section_roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
-    (o, n): (&Point3<N>, &Vector3<N>),
+    section: SectionPlane<'_, N>,
     resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
+    let SectionPlane {
+        point: o,
+        normal: n,
+    } = section;
     let plane = || Plane {
         frame: Frame::about(*o, *n),
     };
@@ -48,7 +64,7 @@ pub(crate) fn section_roots<N: Float>(
             let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
             turn_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
         }
-        Curve::Quartic(c) if through_axis(c, (o, n), resolution) => {
+        Curve::Quartic(c) if through_axis(c, section, resolution) => {
             ruling_roots(c, range, n, resolution, found);
         }
         _ => surface_roots(curve, range, &Surface::Plane(plane()), resolution, found),
@@ -83,12 +99,12 @@ fn base_frame<N: Float>(curve: &QuadricCurve<N>) -> &Frame<N> {
 /// Whether a plane contains the axis of the surface whose rulings carry a curve.
 fn through_axis<N: Float>(
     curve: &QuadricCurve<N>,
-    (o, n): (&Point3<N>, &Vector3<N>),
+    section: SectionPlane<'_, N>,
     resolution: N,
 ) -> bool {
     let axis = base_frame(curve);
-    let away = (axis.origin - o).dot(n).abs();
-    n.dot(&axis.z).abs() <= N::ROUNDING && away <= resolution
+    let away = (axis.origin - section.point).dot(section.normal).abs();
+    section.normal.dot(&axis.z).abs() <= N::ROUNDING && away <= resolution
 }
 
 /// Intersects a curve over the rulings of a surface with a plane through their axis and with normal
@@ -190,14 +206,13 @@ fn turn_roots<N: Float>(
     within(at + half, true);
 }
 
-/// Intersects a line on one of two quadrics with their intersection curve over a range. The line is
-/// given by a point and its unit direction; it meets the curve where it meets the other quadric, a
-/// cylinder. Reports each parameter, always as a transversal crossing. Returns false if there is no
+/// Intersects a line on one of two quadrics with their intersection curve over a range. The line
+/// meets the curve where it meets the other quadric, a cylinder. Reports each parameter, always as a transversal crossing. Returns false if there is no
 /// reliable closed form.
 pub fn line_intersections<N: Float>(
     curve: &Curve<N>,
     [lo, hi]: [N; 2],
-    (start, direction): (&Point3<N>, &Vector3<N>),
+    line: &Line<N>,
     resolution: N,
     found: &mut impl FnMut(N, bool),
 ) -> bool {
@@ -207,7 +222,8 @@ pub fn line_intersections<N: Float>(
     let Ruled::Cylinder(s) = &quartic.base else {
         return false;
     };
-    let (q, w) = (s.frame.coordinates(start), s.frame.components(direction));
+    let q = s.frame.coordinates(&line.origin);
+    let w = s.frame.components(&line.direction);
     let a = w.x * w.x + w.y * w.y;
     if a <= N::ROUNDING.sqrt() {
         return false;
@@ -225,7 +241,7 @@ pub fn line_intersections<N: Float>(
     }
     let k = -(b + radicand.sqrt().copysign(b));
     for at in [k / a, c / k] {
-        let p = start + direction * at;
+        let p = line.origin + line.direction * at;
         let t = curve.in_cycle(curve.parameter(&p), lo);
         // Otherwise the point lies on another branch.
         if t >= lo && t <= hi && (curve.point(t) - p).length() <= N::from_f64(64.0) * resolution {

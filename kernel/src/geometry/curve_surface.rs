@@ -10,7 +10,7 @@ use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::probes::probes;
-use crate::number::roots::{Root, RootKind, Roots, isolate, isolate_closely};
+use crate::number::roots::{NearMiss, Root, RootKind, Roots, isolate, isolate_closely};
 use nalgebra::Point3;
 use std::borrow::Cow;
 
@@ -105,8 +105,14 @@ pub fn cut<N: Float>(
     }
 }
 
-/// The roots, and the near misses as (parameter, value).
-pub type CurveSurfaceRoots<N = f64> = (Vec<Root<N>>, Vec<(N, N)>);
+/// The intersections of a curve with a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CurveSurfaceRoots<N: Float = f64> {
+    /// The roots, in increasing order.
+    pub roots: Vec<Root<N>>,
+    /// The near misses that are close calls.
+    pub misses: Vec<NearMiss<N>>,
+}
 
 /// Intersects a part of a curve, however short, that does not lie on the surface: the roots, and
 /// all near misses that are close calls.
@@ -125,8 +131,8 @@ pub fn roots<N: Float>(
         zeros => zeros,
     };
     match zeros {
-        Roots::At { roots, misses } => (roots, misses),
-        Roots::Everywhere => (Vec::new(), Vec::new()),
+        Roots::At { roots, misses } => CurveSurfaceRoots { roots, misses },
+        Roots::Everywhere => CurveSurfaceRoots::default(),
     }
 }
 
@@ -154,7 +160,7 @@ fn rounded_roots<N: Float>(
     }
     let height = Height::new(curve, surface);
     let ends = range.map(N::rounded);
-    let (found, misses) = roots(&rounded, ends, &surface.to_f64(), resolution.rounded());
+    let found = roots(&rounded, ends, &surface.to_f64(), resolution.rounded());
     let settled = |t: f64| {
         let mut t = N::from_f64(t);
         for _ in 0..STEPS {
@@ -173,10 +179,14 @@ fn rounded_roots<N: Float>(
         contact: r.contact,
         margin: r.margin.map(N::from_f64),
     };
-    let misses = misses
-        .into_iter()
-        .map(|(t, v)| (N::from_f64(t), N::from_f64(v)));
-    Some((found.into_iter().map(root).collect(), misses.collect()))
+    let miss = |m: NearMiss| NearMiss {
+        t: N::from_f64(m.t),
+        value: N::from_f64(m.value),
+    };
+    Some(CurveSurfaceRoots {
+        roots: found.roots.into_iter().map(root).collect(),
+        misses: found.misses.into_iter().map(miss).collect(),
+    })
 }
 
 /// The factor by which the rounded curve must be closer to the exact one than the resolution.

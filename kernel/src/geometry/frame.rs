@@ -1,8 +1,8 @@
 //! Right-handed orthonormal frames.
 
 use crate::geometry::vector::Length;
-use crate::number::analytic::{Analytic, dot};
-use crate::number::float::Float;
+use crate::number::analytic::dot;
+use crate::number::float::{Analytic, Float};
 use nalgebra::{Point3, Vector3};
 
 /// A right-handed orthonormal frame.

@@ -8,8 +8,7 @@ use super::curve::{Circle, Curve, Line};
 use super::surface::Surface;
 use super::trigonometric::Trig2;
 use super::vector::Length;
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 
 /// The restriction of a surface's implicit polynomial to a curve. Its value is the level times the

@@ -24,4 +24,5 @@ pub(crate) mod torus_parameter;
 pub mod trace;
 mod tracer;
 pub(crate) mod trigonometric;
+pub mod unresolved;
 pub mod vector;

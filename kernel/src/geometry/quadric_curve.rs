@@ -10,8 +10,7 @@
 
 use super::surface::{Cone, Cylinder};
 use super::trigonometric::{Trig1, Trig2, trig1};
-use crate::number::analytic::{Analytic, harmonic};
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float, harmonic};
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]

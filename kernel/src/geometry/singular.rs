@@ -9,7 +9,8 @@ mod leading_form;
 use super::bivariate_trig_poly::Partials;
 use super::blow_up::Chart;
 use super::torus_grid::{Cell, regular_grid};
-use super::tracer::{Tracer, Unresolved, deepest, near};
+use super::tracer::{Tracer, deepest, near};
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use crate::number::predicates::CLOSE;
 
@@ -153,12 +154,13 @@ impl<'t, 'a, N: Float> CriticalSearch<'t, 'a, N> {
 
     /// Adds the degenerate point next to a cell's centre, if there is one that is not known.
     fn add_degenerate(&mut self, cell: &Cell<N>) {
-        let Some((point, reach)) = leading_form::degenerate(self.tracer, cell.centre()) else {
+        let Some(found) = leading_form::degenerate(self.tracer, cell.centre()) else {
             return;
         };
-        let is_same = |d: &DegeneratePoint<N>| near(&d.point.angles, &point.angles, reach);
+        let is_same =
+            |d: &DegeneratePoint<N>| near(&d.point.angles, &found.point.angles, found.reach);
         if !self.degenerate.iter().any(is_same) {
-            self.degenerate.push(DegeneratePoint { point, reach });
+            self.degenerate.push(found);
         }
     }
 
@@ -240,7 +242,7 @@ impl Look {
 fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>) -> bool {
     let half = cell.half();
     let around = half.map(|h| N::TWO * h);
-    let (_, thirds) = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
+    let bounds = (tracer.form).partials_about(cell.centre(), around, &tracer.reaches);
     // Scaled by the cell's sides, so that a long cell is treated as a square one.
     let scaled = |xx: N, xy: N, yy: N| {
         let [hx, hy] = half;
@@ -249,7 +251,7 @@ fn is_regular<N: Float>(tracer: &Tracer<'_, N>, cell: &Cell<N>, at: &Partials<N>
     let rows = |[xx, xy, yy]: [N; 3]| xx.max(yy) + xy;
     let [hx, hy] = half.map(|h| h * h);
     let det = (at.xx * at.yy - at.xy * at.xy).abs() * hx * hy;
-    let [xx, xy, yy] = thirds.seconds(around);
+    let [xx, xy, yy] = bounds.thirds.seconds(around);
     // The condition that ‖H⁻¹‖ times the change of H over the neighbourhood is below one.
     let change = rows(scaled(xx, xy, yy));
     rows(scaled(at.xx, at.xy, at.yy)) * change < N::from_f64(0.25) * det

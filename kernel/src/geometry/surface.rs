@@ -5,8 +5,8 @@
 
 use super::frame::Frame;
 use crate::geometry::vector::Length;
-use crate::number::analytic::{Analytic, dot};
-use crate::number::float::Float;
+use crate::number::analytic::dot;
+use crate::number::float::{Analytic, Float};
 use nalgebra::{Point3, Vector3};
 
 /// A plane: its frame's z axis is the normal, pointing to the outside.

@@ -10,7 +10,7 @@ use crate::geometry::implicit_on_curve::ImplicitOnCurve;
 use crate::geometry::surface::Surface;
 use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
 use crate::geometry::torus_parameter::{TorusParameter, arrange};
-use crate::geometry::trigonometric::simple_zeros;
+use crate::geometry::trigonometric::{SimpleZero, simple_zeros};
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 
@@ -39,8 +39,12 @@ impl<N: Float> TorusCurve<N> {
         let section = self.form.section(fixed == TorusParameter::Around, angle);
         let zeros = simple_zeros(&section.0, self.form.bound() * N::ROUNDING)?;
         let mut crossed = Vec::new();
-        for (other, off) in zeros {
-            let slack = off + resolution / self.torus.minor;
+        for SimpleZero {
+            angle: other,
+            error,
+        } in zeros
+        {
+            let slack = error + resolution / self.torus.minor;
             crossed.extend(self.passes(arrange(fixed, angle, other), slack)?);
         }
         Some(crossed)
@@ -71,11 +75,11 @@ impl<N: Float> TorusCurve<N> {
             return None;
         };
         let mut crossed = Vec::new();
-        for (u, off) in simple_zeros(&coefficients, slop)? {
-            let (sin, cos) = u.sin_cos();
+        for SimpleZero { angle, error } in simple_zeros(&coefficients, slop)? {
+            let (sin, cos) = angle.sin_cos();
             let frame = &circle.frame;
             let p = frame.point(circle.radius * cos, circle.radius * sin, N::ZERO);
-            let slack = (off * circle.radius + resolution) / self.torus.minor;
+            let slack = (error * circle.radius + resolution) / self.torus.minor;
             crossed.extend(self.passes(torus.parameters(&p), slack)?);
         }
         Some(crossed)

@@ -10,9 +10,8 @@ use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Section};
 use super::blow_up::{Chart, DEGREE};
 use super::surface::Torus;
 use super::torus_parameter::{TorusParameter, arrange};
-use crate::number::analytic::Analytic;
 use crate::number::bisection::bisect;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
 use nalgebra::Point3;
@@ -263,6 +262,13 @@ impl<N: Float> TorusCurveSegment<N> {
     }
 }
 
+/// A position on a segment.
+struct SegmentPosition<'a, N: Float = f64> {
+    segment: &'a TorusCurveSegment<N>,
+    /// The fraction of the segment.
+    tau: N,
+}
+
 impl<N: Float> TorusCurve<N> {
     fn chart(&self, s: &TorusCurveSegment<N>) -> Option<&Chart<N>> {
         s.chart.and_then(|c| self.charts.get(c))
@@ -308,7 +314,8 @@ impl<N: Float> TorusCurve<N> {
         N::from_f64(self.segments.len() as f64)
     }
 
-    fn locate(&self, t: N) -> (&TorusCurveSegment<N>, N) {
+    /// The segment of a parameter, and the fraction of it.
+    fn locate(&self, t: N) -> SegmentPosition<'_, N> {
         let n = self.segments.len();
         let t = if self.closed {
             t.rem_euclid(N::from_f64(n as f64))
@@ -316,12 +323,15 @@ impl<N: Float> TorusCurve<N> {
             t.clamp(N::ZERO, N::from_f64(n as f64))
         };
         let i = t.floor().index().min(n - 1);
-        (&self.segments[i], t - N::from_f64(i as f64))
+        SegmentPosition {
+            segment: &self.segments[i],
+            tau: t - N::from_f64(i as f64),
+        }
     }
 
     /// (θ, φ) at t with two derivatives by t.
     pub(crate) fn angles(&self, t: N) -> [Jet<N>; 2] {
-        let (s, tau) = self.locate(t);
+        let SegmentPosition { segment: s, tau } = self.locate(t);
         let length = s.to - s.from;
         let x = s.from + tau * length;
         let [y, d, dd] = s.jet(self.form(s), x);
@@ -340,7 +350,7 @@ impl<N: Float> TorusCurve<N> {
 
     /// (θ, φ) over an interval of t inside one segment, with two derivatives.
     pub(crate) fn angles_over(&self, t: Interval<N>) -> [Jet<Interval<N>>; 2] {
-        let (s, tau) = self.locate(t.mid());
+        let SegmentPosition { segment: s, tau } = self.locate(t.mid());
         let length = s.to - s.from;
         let base = t.mid() - tau;
         let offset = t - Interval::point(base);
@@ -361,7 +371,7 @@ impl<N: Float> TorusCurve<N> {
 
     /// A range of the point at t.
     pub(crate) fn box_at(&self, t: N) -> [Interval<N>; 3] {
-        let (s, tau) = self.locate(t);
+        let SegmentPosition { segment: s, tau } = self.locate(t);
         let run = Interval::point(s.from) + Interval::point(tau).scale(s.to - s.from);
         let other = s.solution(self.form(s), run);
         let constant = |v| Jet {
@@ -385,7 +395,7 @@ impl<N: Float> TorusCurve<N> {
     /// The error of the point at t by the rounding of F: F's rounding divided by its gradient. In a
     /// chart of a singular point it is no larger than elsewhere: zero.
     pub(crate) fn rounding_error(&self, t: N) -> N {
-        let (s, tau) = self.locate(t);
+        let SegmentPosition { segment: s, tau } = self.locate(t);
         if s.chart.is_some() {
             return N::ZERO;
         }
@@ -440,7 +450,7 @@ impl<N: Float> TorusCurve<N> {
 
     /// The point at t.
     pub(crate) fn point(&self, t: N) -> Point3<N> {
-        let (s, tau) = self.locate(t);
+        let SegmentPosition { segment: s, tau } = self.locate(t);
         Point3::from(self.lift(self.angles_on(s, tau)))
     }
 

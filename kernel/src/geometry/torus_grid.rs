@@ -100,24 +100,38 @@ pub fn regular_grid<N: Float>() -> Vec<Cell<N>> {
     grid(&xs, &ys)
 }
 
+/// The neighbourhood of a singular point along one angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Zone<N: Float = f64> {
+    pub centre: N,
+    pub size: N,
+}
+
+impl<N: Float> Zone<N> {
+    /// Whether a value of the angle is within a part of the zone.
+    pub fn contains(&self, angle: N, part: N) -> bool {
+        wrap(angle - self.centre).abs() <= part * self.size
+    }
+}
+
 /// The grid lines along one `angle`, given by its index: evenly spaced lines outside the zones, and
-/// the sides of the zones, given as (centre, size).
-pub fn lines<N: Float>(angle: usize, zones: &[(N, N)], layout: &Layout<N>) -> Vec<N> {
+/// the sides of the zones.
+pub fn lines<N: Float>(angle: usize, zones: &[Zone<N>], layout: &Layout<N>) -> Vec<N> {
     let (start, skew) = (layout.start[angle], layout.skew[angle]);
     let mut all: Vec<N> = (0..GRID)
         .map(|i| start + N::TAU * N::from_f64(i as f64) / N::from_f64(GRID as f64))
         .collect();
-    all.retain(|x| zones.iter().all(|(c, size)| wrap(*x - *c).abs() > *size));
-    for &(c, size) in zones {
-        for side in [c - size * skew[0], c + size * skew[1]] {
+    all.retain(|x| zones.iter().all(|z| wrap(*x - z.centre).abs() > z.size));
+    for &Zone { centre, size } in zones {
+        for side in [centre - size * skew[0], centre + size * skew[1]] {
             let side = start + (side - start).rem_euclid(N::TAU);
             let same = all
                 .iter()
                 .any(|x| wrap(*x - side).abs() < size * N::from_f64(SAME));
-            let within = |&(c, size): &(N, N)| {
-                let d = wrap(side - c);
-                d > -size * skew[0] * N::from_f64(WITHIN)
-                    && d < size * skew[1] * N::from_f64(WITHIN)
+            let within = |zone: &Zone<N>| {
+                let d = wrap(side - zone.centre);
+                d > -zone.size * skew[0] * N::from_f64(WITHIN)
+                    && d < zone.size * skew[1] * N::from_f64(WITHIN)
             };
             if !same && !zones.iter().any(within) {
                 all.push(side);

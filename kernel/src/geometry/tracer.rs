@@ -1,25 +1,17 @@
 //! Taylor bounds of F(θ, φ) over cells of the parameter torus, and the number of cells examined.
 
-use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Reaches};
+use super::bivariate_trig_poly::{BivariateTrigPoly, CellPartials, Partials, Reaches};
 use super::torus_curve::wrap;
 use super::torus_grid::Cell;
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use std::cell::Cell as Counter;
 
-/// The curve has a singular point of an unknown kind, or branches too close to be separated.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a curve on a torus could not be resolved near the angles ({:.6}, {:.6})", angles[0], angles[1])]
-pub struct Unresolved {
-    /// (θ, φ).
-    pub angles: [f64; 2],
-}
-
-impl Unresolved {
-    pub(super) fn at<N: Float>(angles: [N; 2]) -> Self {
-        Self {
-            angles: angles.map(N::rounded),
-        }
-    }
+/// A form rounded to f64.
+pub(super) struct RoundedForm<'a> {
+    pub form: &'a BivariateTrigPoly,
+    /// Its rounding error.
+    pub slop: f64,
 }
 
 /// Taylor bounds over a cell: the least |F|, and the ranges of |F_x| and |F_y|.
@@ -96,15 +88,18 @@ impl<'a, N: Float> Tracer<'a, N> {
         Ok(())
     }
 
-    /// The form rounded to f64, for extended precision, and its rounding error.
-    pub(super) fn f64_form(&self) -> Option<(&BivariateTrigPoly, f64)> {
+    /// The form rounded to f64, for extended precision.
+    pub(super) fn f64_form(&self) -> Option<RoundedForm<'_>> {
         let form = self.f64_form.as_deref()?;
-        Some((form, slop(form)))
+        Some(RoundedForm {
+            form,
+            slop: slop(form),
+        })
     }
 
     /// A tracer in f64, for a form in extended precision. Its bounds are valid but may be looser.
     pub(super) fn to_f64(&self) -> Option<Tracer<'_>> {
-        let (form, slop) = self.f64_form()?;
+        let RoundedForm { form, slop } = self.f64_form()?;
         Some(Tracer {
             form,
             reaches: self.reaches.to_f64(),
@@ -117,7 +112,10 @@ impl<'a, N: Float> Tracer<'a, N> {
 
     pub(super) fn bounds(&self, cell: &Cell<N>) -> Bounds<N> {
         let [hx, hy] = cell.half();
-        let (p, thirds) = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
+        let CellPartials {
+            partials: p,
+            thirds,
+        } = (self.form).partials_about(cell.centre(), cell.half(), &self.reaches);
         // The change of the second derivatives over the cell, from the third ones.
         let [xx, xy, yy] = thirds.seconds([hx, hy]);
         let third = xx * hx * hx + N::TWO * xy * hx * hy + yy * hy * hy;

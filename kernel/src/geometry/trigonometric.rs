@@ -1,8 +1,8 @@
 //! Trigonometric polynomials of degree one and two: products, quotients, zeros.
 
 use crate::geometry::vector::solution;
-use crate::number::analytic::{Analytic, harmonic, harmonic_slope};
-use crate::number::float::Float;
+use crate::number::analytic::harmonic_slope;
+use crate::number::float::{Analytic, Float, harmonic};
 use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
@@ -140,37 +140,54 @@ fn about_zero<N: Float>(x: Interval<N>) -> Interval<N> {
     Interval::new(-most, most)
 }
 
-/// The zeros of a trigonometric polynomial in [0, 2π), in order, and whether it changes sign at
-/// each.
-pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<(N, bool)> {
+/// The zeros of a trigonometric polynomial in [0, 2π), in order.
+pub(super) fn zeros_of<N: Float>(k: &Trig2<N>) -> Vec<N> {
     let scale: N = k.iter().map(|c| c.abs()).sum();
     let zeros = zeros_once(k, N::ROUNDING * scale).unwrap_or_default();
-    let changes = |contact: RootKind| contact != RootKind::Touching;
-    zeros.into_iter().map(|(u, c)| (u, changes(c))).collect()
+    zeros.into_iter().map(|zero| zero.angle).collect()
+}
+
+/// A zero of a trigonometric polynomial.
+#[derive(Clone, Copy, Debug)]
+struct AngularZero<N: Float = f64> {
+    angle: N,
+    contact: RootKind,
+}
+
+/// A simple zero of a trigonometric polynomial.
+#[derive(Clone, Copy)]
+pub(super) struct SimpleZero<N: Float = f64> {
+    pub angle: N,
+    /// The error of the angle.
+    pub error: N,
 }
 
 /// The least distance between two simple zeros, relative to the sum of their errors.
 const SEPARATION: f64 = 64.0;
 
-/// The zeros of a polynomial with an error of `resolution`, each with its own error; `None` unless
-/// all are simple, and apart enough to be distinguished from a double zero.
-pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, N)>> {
+/// The zeros of a polynomial with an error of `resolution`; `None` unless all are simple, and apart
+/// enough to be distinguished from a double zero.
+pub(super) fn simple_zeros<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<SimpleZero<N>>> {
     let slope = harmonic_slope(k);
-    let off = |u: N| resolution / harmonic(&slope, u.sin_cos()).abs();
+    let simple = |zero: AngularZero<N>| {
+        let angle = zero.angle;
+        (zero.contact == RootKind::Simple).then(|| SimpleZero {
+            angle,
+            error: resolution / harmonic(&slope, angle.sin_cos()).abs(),
+        })
+    };
     let zeros = zeros_once(k, resolution)?.into_iter();
-    let zeros: Vec<(N, N)> = zeros
-        .map(|(u, contact)| (contact == RootKind::Simple).then(|| (u, off(u))))
-        .collect::<Option<_>>()?;
+    let zeros: Vec<SimpleZero<N>> = zeros.map(simple).collect::<Option<_>>()?;
     let are_separate = |i: usize| {
-        let [(a, off_a), (b, off_b)] = [zeros[i], zeros[(i + 1) % zeros.len()]];
-        let gap = (b - a).rem_euclid(N::TAU);
-        gap > N::from_f64(SEPARATION) * (off_a + off_b)
+        let [a, b] = [zeros[i], zeros[(i + 1) % zeros.len()]];
+        let gap = (b.angle - a.angle).rem_euclid(N::TAU);
+        gap > N::from_f64(SEPARATION) * (a.error + b.error)
     };
     (zeros.len() < 2 || (0..zeros.len()).all(are_separate)).then_some(zeros)
 }
 
 /// The zeros over one turn; `None` if the polynomial vanishes everywhere.
-fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, RootKind)>> {
+fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<AngularZero<N>>> {
     // The start is not on the axes, where symmetric polynomials have their zeros.
     let start = N::from_f64(0.1);
     let breaks: Vec<N> = (0..=8)
@@ -179,17 +196,26 @@ fn zeros_once<N: Float>(k: &Trig2<N>, resolution: N) -> Option<Vec<(N, RootKind)
     let Roots::At { roots, .. } = isolate(&Trigonometric::new(k), &breaks, resolution) else {
         return None;
     };
-    let mut zeros: Vec<(N, RootKind)> = roots
+    let mut zeros: Vec<AngularZero<N>> = roots
         .iter()
-        .map(|r| (r.t.rem_euclid(N::TAU), r.contact))
+        .map(|r| AngularZero {
+            angle: r.t.rem_euclid(N::TAU),
+            contact: r.contact,
+        })
         .collect();
-    zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
-    zeros.dedup_by(|a, b| (a.0 - b.0).abs() <= N::ROUNDING * N::TAU);
+    zeros.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    zeros.dedup_by(|a, b| (a.angle - b.angle).abs() <= N::ROUNDING * N::TAU);
     Some(zeros)
 }
 
-/// B and C divided by sin((u - u0)/2), where u0 is a zero of both, in half angles.
-pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2], [N; 4]) {
+/// B and C divided by sin((u - u0)/2), in half angles.
+pub(super) struct HalfAngleQuotients<N: Float = f64> {
+    pub linear: [N; 2],
+    pub constant: [N; 4],
+}
+
+/// Divides B and C by sin((u - u0)/2), where u0 is a zero of both.
+pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> HalfAngleQuotients<N> {
     // Sampled away from the zero and solved for; both are exact up to rounding.
     let samples: Vec<N> = (0..8)
         .map(|i| u0 + N::TAU * (N::whole(i) + N::HALF) / N::from_f64(8.0))
@@ -208,9 +234,10 @@ pub(super) fn divide_half<N: Float>(b: &Trig1<N>, c: &Trig2<N>, u0: N) -> ([N; 2
         nc += g * g.transpose();
         rc += g * (harmonic(c, u.sin_cos()) / half(u));
     }
-    let fb = solution(nb.into(), rb.into()).unwrap_or([N::ZERO; 2]);
-    let fc = solution(nc.into(), rc.into()).unwrap_or([N::ZERO; 4]);
-    (fb, fc)
+    HalfAngleQuotients {
+        linear: solution(nb.into(), rb.into()).unwrap_or([N::ZERO; 2]),
+        constant: solution(nc.into(), rc.into()).unwrap_or([N::ZERO; 4]),
+    }
 }
 
 #[cfg(test)]
@@ -232,7 +259,7 @@ mod tests {
         for by in [1.0, 16.0, 256.0, 4096.0] {
             let zeros = zeros_once(&k, F237::ROUNDING * size * F237::from_f64(by)).unwrap();
             assert_eq!(zeros.len(), 1, "{zeros:?}");
-            assert_eq!(zeros[0].1, RootKind::Touching);
+            assert_eq!(zeros[0].contact, RootKind::Touching);
         }
     }
 }

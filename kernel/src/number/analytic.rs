@@ -1,9 +1,6 @@
 //! Functions that the scalar types of the generic formulas share.
 
-pub use super::float::Analytic;
-pub(crate) use super::float::harmonic;
-
-use super::float::Float;
+use super::float::{Analytic, Float};
 
 /// The coefficients of the derivative of such a polynomial, which is one of the same form.
 pub(crate) fn harmonic_slope<N: Float>([_, c1, s1, c2, s2]: &[N; 5]) -> [N; 5] {

@@ -33,14 +33,22 @@ pub fn bisect<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
     N::HALF * (a + b)
 }
 
-/// The zero of `g` in [a, b] by Newton steps inside a shrinking bracket. `g` gives the value and
-/// the derivative; `ga` is the value at `a`.
+/// The value of a function and its derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueAndSlope<N: Float = f64> {
+    /// The value.
+    pub value: N,
+    /// The derivative.
+    pub slope: N,
+}
+
+/// The zero of `g` in [a, b] by Newton steps inside a shrinking bracket; `ga` is the value at `a`.
 ///
 /// The iteration ends where the error after the next step is below rounding. A step of length s
 /// leaves an error of |g''/2g'| s^2, with g'' estimated from the last two points. Close to zero,
 /// where rounding is not relative, it ends where this error is below the rounding of the bracket's
 /// ends and steps no longer shrink.
-pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N)) -> N {
+pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> ValueAndSlope<N>) -> N {
     if ga == N::ZERO {
         return a;
     }
@@ -49,7 +57,7 @@ pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> (N, N
     let mut last = b - a;
     let mut before: Option<(N, N)> = None;
     for _ in 0..halvings::<N>() {
-        let (v, d) = g(t);
+        let ValueAndSlope { value: v, slope: d } = g(t);
         if v == N::ZERO {
             return t;
         }
@@ -107,13 +115,16 @@ mod tests {
             let g = |t: N| {
                 calls.set(calls.get() + 1);
                 let (sin, cos) = t.sin_cos();
-                (cos - level, -sin)
+                ValueAndSlope {
+                    value: cos - level,
+                    slope: -sin,
+                }
             };
-            let ga = g(a).0;
+            let ga = g(a).value;
             let found = bisect_newton(a, b, ga, g);
             assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
             assert!(calls.get() <= 20, "{z:?}: evaluated {} times", calls.get());
-            let found = bisect(a, b, ga, |t| g(t).0);
+            let found = bisect(a, b, ga, |t| g(t).value);
             assert!((found - z).abs() <= N::ROUNDING, "{z:?}: {found:?}");
         }
     }

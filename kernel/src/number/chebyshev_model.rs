@@ -10,8 +10,7 @@
 //! wide margin. The estimate is no bound. Only 237-bit numbers use it, and these are not certified
 //! elsewhere either.
 
-use super::analytic::Analytic;
-use super::float::Float;
+use super::float::{Analytic, Float};
 use super::function::Function;
 use super::interval::Interval;
 use super::jet::Jet;

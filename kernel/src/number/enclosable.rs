@@ -1,8 +1,7 @@
 //! The scalar type in which relations between surfaces are evaluated: f64 for an estimate, f64
 //! intervals for the decision, and enclosures with more bits where those are inconclusive.
 
-use super::analytic::Analytic;
-use super::float::Float;
+use super::float::{Analytic, Float};
 use super::interval::Interval;
 use super::rational_interval::RationalInterval;
 use std::ops::{Add, Mul, Neg, Sub};

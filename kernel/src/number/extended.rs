@@ -2,8 +2,8 @@
 
 mod circular;
 
-use super::analytic::{Analytic, sinc_jet};
-use super::float::Float;
+use super::analytic::sinc_jet;
+use super::float::{Analytic, Float};
 use super::gauss_rules::GaussRules;
 use super::legendre::gauss_rules;
 use super::rational::Rational;
@@ -128,17 +128,27 @@ fn scaled(n: &UBig, exponent: isize) -> f256 {
     }
 }
 
+/// A number as a sign, an integer and a power of two.
+struct BinaryParts {
+    sign: Sign,
+    significand: UBig,
+    exponent: isize,
+}
+
 impl F237 {
-    /// The sign, and the magnitude as an integer times a power of two.
-    fn parts(self) -> (Sign, UBig, isize) {
+    /// The number as an integer times a power of two.
+    fn parts(self) -> BinaryParts {
         let (sign, exponent, (high, low)) = self.0.as_sign_exp_signif();
         let sign = if sign == 0 {
             Sign::Positive
         } else {
             Sign::Negative
         };
-        let significand = (UBig::from(high) << 128usize) + UBig::from(low);
-        (sign, significand, exponent as isize)
+        BinaryParts {
+            sign,
+            significand: (UBig::from(high) << 128usize) + UBig::from(low),
+            exponent: exponent as isize,
+        }
     }
 
     /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d).
@@ -207,7 +217,11 @@ impl Float for F237 {
         if !self.is_finite() {
             return None;
         }
-        let (sign, significand, exponent) = self.parts();
+        let BinaryParts {
+            sign,
+            significand,
+            exponent,
+        } = self.parts();
         let magnitude = match usize::try_from(exponent) {
             Ok(exponent) => Rational::from(significand << exponent),
             Err(_) => Rational::from_parts(

@@ -1,7 +1,16 @@
 //! The quadrature rules of a precision.
 
-/// The nodes in (-1, 1) and the weights of a quadrature rule.
-pub(crate) type GaussRule<N = f64> = Vec<(N, N)>;
+/// The nodes of a quadrature rule.
+pub(crate) type GaussRule<N = f64> = Vec<GaussNode<N>>;
+
+/// A node of a quadrature rule.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GaussNode<N = f64> {
+    /// The place in (-1, 1).
+    pub x: N,
+    /// The weight.
+    pub weight: N,
+}
 
 /// The quadrature rules of a precision.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Closed floating-point intervals, rounded outwards: the first filter of every predicate.
 
-use super::analytic::{Analytic, harmonic, harmonic_slope, sinc_jet};
-use super::float::Float;
+use super::analytic::{harmonic_slope, sinc_jet};
+use super::float::{Analytic, Float, harmonic};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A closed interval that contains the exact value.

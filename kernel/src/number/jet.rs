@@ -1,7 +1,7 @@
 //! Jets: a value with its first two derivatives along a curve's parameter.
 
-use super::analytic::{Analytic, harmonic_slope, sinc_jet};
-use super::float::Float;
+use super::analytic::{harmonic_slope, sinc_jet};
+use super::float::{Analytic, Float};
 use super::interval::Interval;
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,7 +1,7 @@
 //! The nodes and weights of Gauss-Legendre quadrature.
 
 use super::float::Float;
-use super::gauss_rules::{GaussRule, GaussRules};
+use super::gauss_rules::{GaussNode, GaussRule, GaussRules};
 
 /// The rules of a precision, with `smooth` nodes in the first.
 pub(super) fn gauss_rules<N: Float>(smooth: usize, settled: N) -> GaussRules<N> {
@@ -32,7 +32,8 @@ pub(super) fn gauss<N: Float>(n: usize) -> GaussRule<N> {
                 x -= p / d;
             }
             let (_, d) = legendre(x);
-            (x, N::TWO / ((N::ONE - x * x) * d * d))
+            let weight = N::TWO / ((N::ONE - x * x) * d * d);
+            GaussNode { x, weight }
         })
         .collect()
 }

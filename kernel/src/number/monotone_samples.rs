@@ -8,7 +8,21 @@ const LEVEL: f64 = 1.0 / 64.0;
 /// The samples of a function, in order of the parameter.
 #[derive(Debug, Default)]
 pub(super) struct MonotoneSamples<N: Float = f64> {
-    marks: Vec<(N, N)>,
+    marks: Vec<Sample<N>>,
+}
+
+/// A sample of a function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample<N: Float = f64> {
+    /// The parameter.
+    pub t: N,
+    pub value: N,
+}
+
+impl<N: Float> Sample<N> {
+    fn size(&self) -> N {
+        self.value.abs()
+    }
 }
 
 /// Whether the absolute value rises or falls.
@@ -23,53 +37,57 @@ enum Way {
 impl<N: Float> MonotoneSamples<N> {
     /// Adds a sample; an infinite value means that only its large size is known.
     pub fn mark(&mut self, t: N, value: N) {
-        self.marks.push((t, value));
+        self.marks.push(Sample { t, value });
     }
 
-    /// The local extrema of the absolute value, as (parameter, value): each minimum, and each
-    /// maximum between smaller values. At an end of the range `beyond` continues the function. The
-    /// end is no minimum if the function decreases further outside.
-    pub fn turns(&self, beyond: impl Fn(N) -> N) -> Vec<(N, N)> {
+    /// The local extrema of the absolute value: each minimum, and each maximum between smaller
+    /// values. At an end of the range `beyond` continues the function. The end is no minimum if the
+    /// function decreases further outside.
+    pub fn turns(&self, beyond: impl Fn(N) -> N) -> Vec<Sample<N>> {
         let (Some(&first), Some(&last)) = (self.marks.first(), self.marks.last()) else {
             return Vec::new();
         };
-        let size = |mark: (N, N)| mark.1.abs();
         // An end counts as a minimum only if the function is no smaller at the mirrored parameter
         // outside.
-        let is_least =
-            |end: (N, N), inside: N| beyond(N::TWO * end.0 - inside) * end.1.signum() >= size(end);
+        let is_least = |end: Sample<N>, inside: N| {
+            beyond(N::TWO * end.t - inside) * end.value.signum() >= end.size()
+        };
         let mut turns = Vec::new();
         let mut way = Way::Level;
         let (mut least, mut most) = (first, first);
         for &mark in &self.marks {
-            let rises = size(mark) > size(least) * (N::ONE + N::from_f64(LEVEL));
-            let falls = size(mark) < size(most) * (N::ONE - N::from_f64(LEVEL));
+            let rises = mark.size() > least.size() * (N::ONE + N::from_f64(LEVEL));
+            let falls = mark.size() < most.size() * (N::ONE - N::from_f64(LEVEL));
             match way {
                 Way::Level | Way::Down if rises => {
-                    if least.0 > first.0 || is_least(least, mark.0) {
+                    if least.t > first.t || is_least(least, mark.t) {
                         turns.push(least);
                     }
                     (way, most) = (Way::Up, mark);
                 }
                 Way::Level | Way::Up if falls => {
-                    if most.0 > first.0 {
+                    if most.t > first.t {
                         turns.push(most);
                     }
                     (way, least) = (Way::Down, mark);
                 }
                 _ => {
-                    least = if size(mark) < size(least) {
+                    least = if mark.size() < least.size() {
                         mark
                     } else {
                         least
                     };
-                    most = if size(mark) > size(most) { mark } else { most };
+                    most = if mark.size() > most.size() {
+                        mark
+                    } else {
+                        most
+                    };
                 }
             }
         }
         match way {
             Way::Level => turns.push(least),
-            Way::Down if least.0 < last.0 || is_least(least, self.risen_before(least)) => {
+            Way::Down if least.t < last.t || is_least(least, self.risen_before(least)) => {
                 turns.push(least);
             }
             _ => {}
@@ -78,9 +96,9 @@ impl<N: Float> MonotoneSamples<N> {
     }
 
     /// The last parameter before the minimum at which the absolute value is larger.
-    fn risen_before(&self, least: (N, N)) -> N {
-        let more = |m: &&(N, N)| m.1.abs() > least.1.abs() * (N::ONE + N::from_f64(LEVEL));
-        self.marks.iter().rev().find(more).map_or(least.0, |m| m.0)
+    fn risen_before(&self, least: Sample<N>) -> N {
+        let more = |m: &&Sample<N>| m.size() > least.size() * (N::ONE + N::from_f64(LEVEL));
+        self.marks.iter().rev().find(more).map_or(least.t, |m| m.t)
     }
 }
 
@@ -94,7 +112,7 @@ mod tests {
             let t = lo + (hi - lo) * f64::from(i) / 100.0;
             profile.mark(t, f(t));
         }
-        profile.turns(f).iter().map(|turn| turn.0).collect()
+        profile.turns(f).iter().map(|turn| turn.t).collect()
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! f64 where it is accurate enough.
 
 use super::float::Float;
-use super::gauss_rules::GaussRule;
+use super::gauss_rules::{GaussNode, GaussRule};
 use super::probes::probes;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -16,7 +16,7 @@ pub fn integral<N: Float, const D: usize>(
 ) -> [N; D] {
     let (mid, half) = (N::HALF * (a + b), N::HALF * (b - a));
     let mut sum = [N::ZERO; D];
-    for &(x, w) in rule {
+    for &GaussNode { x, weight: w } in rule {
         let value = f(mid + half * x);
         for (s, v) in sum.iter_mut().zip(value) {
             *s += w * half * v;

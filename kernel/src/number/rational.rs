@@ -34,7 +34,7 @@ pub enum DecimalError {
 /// The text is not a decimal literal, its exponent exceeds [`MAX_EXPONENT`], or it has more than
 /// [`MAX_DIGITS`] digits.
 pub fn from_decimal(text: &str) -> Result<Rational, DecimalError> {
-    let (negative, rest) = split_sign(text);
+    let Unsigned { negative, rest } = split_sign(text);
     let (mantissa, exponent) = match rest.find(['e', 'E']) {
         Some(at) => (&rest[..at], parse_exponent(&rest[at + 1..])?),
         None => (rest, 0),
@@ -64,15 +64,23 @@ pub fn from_decimal(text: &str) -> Result<Rational, DecimalError> {
     Ok(if negative { -magnitude } else { magnitude })
 }
 
-fn split_sign(text: &str) -> (bool, &str) {
-    match text.strip_prefix('-') {
-        Some(rest) => (true, rest),
-        None => (false, text.strip_prefix('+').unwrap_or(text)),
-    }
+/// A literal without its sign.
+struct Unsigned<'t> {
+    negative: bool,
+    rest: &'t str,
+}
+
+fn split_sign(text: &str) -> Unsigned<'_> {
+    let negative = text.starts_with('-');
+    let rest = text.strip_prefix(['-', '+']).unwrap_or(text);
+    Unsigned { negative, rest }
 }
 
 fn parse_exponent(text: &str) -> Result<i64, DecimalError> {
-    let (negative, digits) = split_sign(text);
+    let Unsigned {
+        negative,
+        rest: digits,
+    } = split_sign(text);
     if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
         return Err(DecimalError::Malformed);
     }

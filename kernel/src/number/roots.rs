@@ -6,15 +6,13 @@
 //! its certified sign, within it as a tangency. Other intervals are halved. The values are
 //! distances, so the resolution is the part's.
 
-pub use super::function::Function;
-
-use super::analytic::Analytic;
-use super::bisection::{bisect, bisect_newton};
+use super::bisection::{ValueAndSlope, bisect, bisect_newton};
 use super::chebyshev_model::ChebyshevModel;
-use super::float::Float;
+use super::float::{Analytic, Float};
+use super::function::Function;
 use super::interval::Interval;
 use super::jet::Jet;
-use super::monotone_samples::MonotoneSamples;
+use super::monotone_samples::{MonotoneSamples, Sample};
 use super::predicates::CLOSE;
 use super::probes::probes;
 
@@ -53,10 +51,18 @@ pub enum Roots<N: Float = f64> {
     At {
         /// The roots, in increasing order.
         roots: Vec<Root<N>>,
-        /// Local minima of the absolute value close to zero: (parameter, value). A slow descent to
-        /// a root is not one.
-        misses: Vec<(N, N)>,
+        /// Local minima of the absolute value close to zero. A slow descent to a root is not one.
+        misses: Vec<NearMiss<N>>,
     },
+}
+
+/// A local minimum of a function's absolute value close to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearMiss<N: Float = f64> {
+    /// The parameter.
+    pub t: N,
+    /// The function's value there.
+    pub value: N,
 }
 
 #[derive(Clone, Copy)]
@@ -392,7 +398,10 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     fn refine(&self, a: N, b: N, fa: N) -> N {
         bisect_newton(a, b, fa, |t| {
             let j = self.f.at(t);
-            (j.v, j.d)
+            ValueAndSlope {
+                value: j.v,
+                slope: j.d,
+            }
         })
     }
 
@@ -419,16 +428,16 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
         {
             return Roots::Everywhere;
         }
-        let ends: Vec<(N, N)> = merged
+        let ends: Vec<[N; 2]> = merged
             .iter()
-            .map(|g| (g[0].lo, g[g.len() - 1].hi))
+            .map(|g| [g[0].lo, g[g.len() - 1].hi])
             .collect();
         // The sign is unambiguous between clusters; beyond the ends of the range the function is
         // evaluated, too.
         let step = (last - first) * N::from_f64(OUTSIDE);
         let sign_between = |i: usize| {
-            let left = if i == 0 { None } else { Some(ends[i - 1].1) };
-            let right = ends.get(i).map(|e| e.0);
+            let left = if i == 0 { None } else { Some(ends[i - 1][1]) };
+            let right = ends.get(i).map(|e| e[0]);
             let t = match (left, right) {
                 (Some(l), Some(r)) => N::HALF * (l + r),
                 (None, Some(r)) if r <= first => r - step,
@@ -444,9 +453,14 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
             self.root(group, crosses)
         });
         let roots = roots.collect();
-        let mut misses = self.profile.turns(|t| self.value(t));
-        misses.retain(|m| m.1.abs() > self.resolution && m.1.abs() < self.reach);
-        Roots::At { roots, misses }
+        let turns = self.profile.turns(|t| self.value(t)).into_iter();
+        let misses = turns
+            .filter(|m| m.value.abs() > self.resolution && m.value.abs() < self.reach)
+            .map(|Sample { t, value }| NearMiss { t, value });
+        Roots::At {
+            roots,
+            misses: misses.collect(),
+        }
     }
 
     /// The root of a group of adjacent clusters.

@@ -108,8 +108,11 @@ impl AlgebraicPoint {
     ) -> Option<Self> {
         let place = Place::new(p, FIRST)?;
         let forms = polynomials.into_iter().map(Form::new);
-        let known: Vec<(Form, Vector3<f64>)> = forms
-            .filter_map(|form| form.direction(&place, CLEAR).map(|d| (form, d)))
+        let known: Vec<DirectedForm> = forms
+            .filter_map(|form| {
+                let direction = form.direction(&place, CLEAR)?;
+                Some(DirectedForm { form, direction })
+            })
             .collect();
         let base = INDEPENDENT
             .iter()
@@ -245,12 +248,18 @@ impl AlgebraicPoint {
     }
 }
 
+/// A polynomial, and the direction of its gradient at a point.
+struct DirectedForm {
+    form: Form,
+    direction: Vector3<f64>,
+}
+
 /// The first three polynomials whose gradients are independent: the sine between each and the span
 /// of those before is at least `least`.
-fn independent(known: &[(Form, Vector3<f64>)], least: f64) -> Option<[Form; 3]> {
+fn independent(known: &[DirectedForm], least: f64) -> Option<[Form; 3]> {
     let mut chosen: Vec<Form> = Vec::new();
     let mut span: Vec<Vector3<f64>> = Vec::new();
-    for (form, direction) in known {
+    for DirectedForm { form, direction } in known {
         let rest = span.iter().fold(*direction, |d, e| d - e * e.dot(&d));
         if rest.norm() > least {
             span.push(rest.normalize());

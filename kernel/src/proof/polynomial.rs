@@ -137,18 +137,21 @@ impl Polynomial {
 
     /// The plane through a point, perpendicular to a direction.
     pub fn plane(point: &[Rational; 3], direction: &[Rational; 3]) -> Self {
-        let (away, _) = away(point);
+        let away = away(point).components;
         dot(&whole_vector(direction), &away).reduced()
     }
 
     /// The polynomial of a surface; that of a cone has both nappes.
     pub fn new<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
-        let (v, q) = away(&exact.point);
+        let IntegralOffset {
+            components: v,
+            factor: q,
+        } = away(&exact.point);
         let d = whole_vector(&exact.direction);
         let square = |p: &Self| p.times(p);
         let (vv, dd) = (dot(&v, &v), dot(&d, &d));
         let up = dot(&d, &v);
-        let (a, b) = parts(&exact.size);
+        let [a, b] = parts(&exact.size);
         let across = dd.times(&vv).minus(&square(&up));
         let all = match kind {
             Surface::Plane(_) => up,
@@ -163,7 +166,7 @@ impl Polynomial {
                 along.minus(&dd.times(&vv).scaled(&(&b * &b)))
             }
             Surface::Torus(_) => {
-                let (c, e) = parts(&exact.tube);
+                let [c, e] = parts(&exact.tube);
                 // Both radii over a common denominator.
                 let (major, minor, m) = (&a * &e, &c * &b, &b * &e);
                 let squares = (&major * &major - &minor * &minor) * &q * &q;
@@ -177,12 +180,18 @@ impl Polynomial {
 }
 
 /// The numerator and the denominator.
-fn parts(x: &Rational) -> (IBig, IBig) {
-    (x.numerator().clone(), IBig::from(x.denominator().clone()))
+fn parts(x: &Rational) -> [IBig; 2] {
+    [x.numerator().clone(), IBig::from(x.denominator().clone())]
 }
 
-/// Three numbers times the smallest factor that makes them integers, and that factor.
-fn whole(numbers: &[Rational; 3]) -> ([IBig; 3], IBig) {
+/// Three numbers times a factor that makes them integers.
+struct IntegralMultiple {
+    numbers: [IBig; 3],
+    factor: IBig,
+}
+
+/// Three numbers times the smallest factor that makes them integers.
+fn whole(numbers: &[Rational; 3]) -> IntegralMultiple {
     let [a, b, c] = numbers.each_ref().map(|x| x.denominator().clone());
     let least = |a: UBig, b: UBig| {
         let common = (&a).gcd(&b);
@@ -190,17 +199,29 @@ fn whole(numbers: &[Rational; 3]) -> ([IBig; 3], IBig) {
     };
     let all = IBig::from(least(least(a, b), c));
     let times = |x: &Rational| x.numerator() * (&all / IBig::from(x.denominator().clone()));
-    (numbers.each_ref().map(times), all)
+    IntegralMultiple {
+        numbers: numbers.each_ref().map(times),
+        factor: all,
+    }
 }
 
 fn whole_vector(direction: &[Rational; 3]) -> Vector {
-    let (numbers, _) = whole(direction);
-    numbers.map(Polynomial::constant)
+    whole(direction).numbers.map(Polynomial::constant)
 }
 
-/// q (x - p) with the smallest q that makes it integral, and q.
-fn away(point: &[Rational; 3]) -> (Vector, IBig) {
-    let (p, q) = whole(point);
+/// q (x - p) with integers q and q p.
+struct IntegralOffset {
+    components: Vector,
+    /// q.
+    factor: IBig,
+}
+
+/// q (x - p) with the smallest q that makes it integral.
+fn away(point: &[Rational; 3]) -> IntegralOffset {
+    let IntegralMultiple {
+        numbers: p,
+        factor: q,
+    } = whole(point);
     let component = |axis: usize| {
         let mut all = Polynomial::constant(-p[axis].clone());
         let mut exponents = [0; 3];
@@ -208,7 +229,10 @@ fn away(point: &[Rational; 3]) -> (Vector, IBig) {
         all.add_term(exponents, q.clone());
         all
     };
-    ([0, 1, 2].map(component), q)
+    IntegralOffset {
+        components: [0, 1, 2].map(component),
+        factor: q,
+    }
 }
 
 fn dot(a: &Vector, b: &Vector) -> Polynomial {

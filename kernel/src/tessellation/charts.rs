@@ -61,8 +61,9 @@ impl Chart {
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
-                let (z, cap) = Around::new(brep, face, &s, lines).centre(accuracy, resolution);
-                Self::Sphere(Frame::about(s.frame.origin, z), s.radius, cap)
+                let around = Around::new(brep, face, &s, lines);
+                let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
+                Self::Sphere(Frame::about(s.frame.origin, direction), s.radius, cap)
             }
             Surface::Torus(s) => {
                 let at = Seams::angles(brep, face, lines);
@@ -163,6 +164,14 @@ struct Around<'a> {
     chords: Vec<[Point3<f64>; 2]>,
 }
 
+/// The centre of the projection of a sphere.
+struct SphereCentre {
+    direction: Vector3<f64>,
+    /// The angular radius of a cap about a direction in the face; it contains no edge and is flat
+    /// within the accuracy.
+    cap: Option<f64>,
+}
+
 impl<'a> Around<'a> {
     fn new(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
         let chords = brep.topology.edges_of(face).flat_map(|edge| {
@@ -177,19 +186,21 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// The centre of the projection: a direction outside the face if there is one. Otherwise a
-    /// direction in the face, and the angular radius of a cap about it that contains no edge and is
-    /// flat within the accuracy.
-    fn centre(&self, accuracy: &Accuracy, resolution: f64) -> (Vector3<f64>, Option<f64>) {
-        let outside = self.outside(resolution);
-        if let Some(z) = outside {
-            return (z, None);
+    /// The centre of the projection: a direction outside the face if there is one, otherwise a
+    /// direction in the face with a cap.
+    fn centre(&self, accuracy: &Accuracy, resolution: f64) -> SphereCentre {
+        if let Some(direction) = self.outside(resolution) {
+            let cap = None;
+            return SphereCentre { direction, cap };
         }
         let z = self.farthest(&mut spread()).unwrap_or_else(Vector3::z);
         let radius = self.sphere.radius;
         let clear = (self.away(&z) - accuracy.deviation) / (2.0 * radius);
         let flat = TAU / f64::from(steps_round(radius, &accuracy.part(0.5)));
-        (z, Some(flat.min(clear)))
+        SphereCentre {
+            direction: z,
+            cap: Some(flat.min(clear)),
+        }
     }
 
     /// The direction of a point of the sphere outside the face, far from the face if possible.

@@ -66,14 +66,34 @@ pub(super) struct FaceTriangulation {
     /// Triangles outside the chart, counterclockwise as the chart is, by their points.
     pub cap: Vec<[u32; 3]>,
     /// The number of nodes that each of its edges had.
-    built_of: Vec<(EdgeId, usize)>,
+    built_of: Vec<NodeCount>,
+}
+
+/// The number of nodes of an edge.
+struct NodeCount {
+    edge: EdgeId,
+    count: usize,
+}
+
+/// The use of an edge by a loop.
+struct EdgeRun {
+    edge: EdgeId,
+    sense: Sense,
+}
+
+/// A point along a seam.
+struct SeamMark {
+    /// The position along the seam.
+    along: f64,
+    /// The index of the point, if it is known.
+    point: Option<u32>,
 }
 
 impl FaceTriangulation {
     /// Whether no edge of the face has been divided since.
     pub fn is_current(&self, lines: &Polylines) -> bool {
         let mut edges = self.built_of.iter();
-        edges.all(|&(edge, count)| lines.nodes(edge).len() == count)
+        edges.all(|known| lines.nodes(known.edge).len() == known.count)
     }
 
     /// The triangulation of the face, or the divisions of edges needed first.
@@ -94,7 +114,7 @@ impl FaceTriangulation {
             accuracy: &accuracy.part(0.5),
         };
         let mut builder = Builder::new(brep, face, fit, lines);
-        for (edge, sense) in runs(brep, face) {
+        for EdgeRun { edge, sense } in runs(brep, face) {
             builder.add(edge, sense);
         }
         builder.finish()
@@ -102,10 +122,13 @@ impl FaceTriangulation {
 }
 
 /// The edges of a face, in the order of its loops.
-fn runs(brep: &Brep, face: FaceId) -> Vec<(EdgeId, Sense)> {
+fn runs(brep: &Brep, face: FaceId) -> Vec<EdgeRun> {
     let t = &brep.topology;
     t.coedges_of(face)
-        .map(|c| (t.coedge(c).edge, t.coedge(c).sense))
+        .map(|c| EdgeRun {
+            edge: t.coedge(c).edge,
+            sense: t.coedge(c).sense,
+        })
         .collect()
 }
 
@@ -134,7 +157,7 @@ fn cut_at_seams(
     seams: &Seams,
     lines: &mut Polylines,
 ) {
-    for (edge, _) in runs(brep, face) {
+    for EdgeRun { edge, .. } in runs(brep, face) {
         let curve = brep.curve(edge);
         let from_seam =
             |i: usize, t: f64| signed_turn(surface.parameters(&curve.point(t))[i] - seams.at[i]);
@@ -171,8 +194,12 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(brep: &'a Brep, face: FaceId, fit: ChordTest<'a>, lines: &'a mut Polylines) -> Self {
-        let edges = runs(brep, face).into_iter().map(|r| r.0);
-        let built_of = edges.map(|e| (e, lines.nodes(e).len())).collect();
+        let runs = runs(brep, face).into_iter();
+        let counts = runs.map(|EdgeRun { edge, .. }| NodeCount {
+            edge,
+            count: lines.nodes(edge).len(),
+        });
+        let built_of = counts.collect();
         Self {
             fit,
             brep,
@@ -478,15 +505,19 @@ impl<'a> Builder<'a> {
             };
             let mut marks = self.marks_along(i, lengths[other], seams.steps[other]);
             for mark in &mut marks {
-                if mark.1.is_none() {
-                    let p = self.fit.chart.lift(&at(mark.0, 0.0));
-                    mark.1 = Some(self.lines.add(p));
+                if mark.point.is_none() {
+                    let p = self.fit.chart.lift(&at(mark.along, 0.0));
+                    mark.point = Some(self.lines.add(p));
                 }
             }
-            marks.insert(0, (0.0, Some(origin)));
-            marks.push((lengths[other], Some(origin)));
+            let corner = |along: f64| SeamMark {
+                along,
+                point: Some(origin),
+            };
+            marks.insert(0, corner(0.0));
+            marks.push(corner(lengths[other]));
             let mut ends = [Vec::new(), Vec::new()];
-            for (along, point) in marks {
+            for SeamMark { along, point } in marks {
                 for (list, beyond) in ends.iter_mut().zip([0.0, lengths[i]]) {
                     let corner = point.and_then(|p| self.corner(at(along, beyond), p));
                     self.crowded |= corner.is_none();
@@ -508,22 +539,28 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The positions of points along a seam, in order: those of edges that cross it, and steps in
-    /// between.
-    fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<(f64, Option<u32>)> {
+    /// The points along a seam, in order: those of edges that cross it, and steps in between.
+    fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<SeamMark> {
         let other = 1 - seam;
         let corners = self.domain.net.vertices();
         let crossing = corners.filter(|v| v.data().at[seam] == 0.0);
-        let mut marks: Vec<(f64, Option<u32>)> = crossing
-            .map(|v| (v.data().at[other], Some(v.data().point)))
-            .filter(|m| m.0 > 0.0 && m.0 < length)
+        let mut marks: Vec<SeamMark> = crossing
+            .map(|v| SeamMark {
+                along: v.data().at[other],
+                point: Some(v.data().point),
+            })
+            .filter(|m| m.along > 0.0 && m.along < length)
             .collect();
         let step = length / f64::from(steps);
-        let known: Vec<f64> = marks.iter().map(|m| m.0).collect();
+        let known: Vec<f64> = marks.iter().map(|m| m.along).collect();
         let between = (1..steps).map(|k| step * f64::from(k));
         let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED * step);
-        marks.extend(between.filter(clear).map(|x| (x, None)));
-        marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+        marks.extend(
+            between
+                .filter(clear)
+                .map(|along| SeamMark { along, point: None }),
+        );
+        marks.sort_by(|a, b| a.along.total_cmp(&b.along));
         marks
     }
 }

@@ -104,15 +104,18 @@ impl<'a> Refiner<'a> {
         let mut own: HashSet<[u32; 2]> = on_seams(domain).collect();
         let has_seams = !domain.glued.is_empty();
         let sides = free_sides(domain, inside).into_iter();
-        let doubled = sides
-            .filter(|(side, _)| self.taken.contains(side) || (has_seams && !own.insert(*side)));
-        let middles = doubled.map(|(_, [a, b])| nalgebra::center(&a.at, &b.at));
+        let doubled = sides.filter(|side| {
+            self.taken.contains(&side.points) || (has_seams && !own.insert(side.points))
+        });
+        let middles = doubled.map(|FreeSide { ends: [a, b], .. }| nalgebra::center(&a.at, &b.at));
         middles.collect()
     }
 
     /// Records the sides between points that other faces may share.
     fn take(&mut self, domain: &FaceTriangulation, inside: &[Inner]) {
-        let free = free_sides(domain, inside).into_iter().map(|(side, _)| side);
+        let free = free_sides(domain, inside)
+            .into_iter()
+            .map(|side| side.points);
         let all = free.chain(on_seams(domain));
         let shared = self.shared;
         self.taken.extend(all.filter(|[_, last]| *last < shared));
@@ -144,8 +147,15 @@ fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The inner sides of a face that may be divided, with the positions of their ends.
-fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<([u32; 2], [Corner; 2])> {
+/// An inner side of a face that may be divided.
+struct FreeSide {
+    /// The points at its ends, the lower first.
+    points: [u32; 2],
+    ends: [Corner; 2],
+}
+
+/// The inner sides of a face that may be divided.
+fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<FreeSide> {
     let free = inside.iter().flat_map(|&triangle| {
         let edges = domain.net.face(triangle).adjacent_edges();
         edges.into_iter().filter(|edge| {
@@ -156,8 +166,11 @@ fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<([u32; 2], [C
     let mut seen = HashSet::new();
     let once = free.filter(|edge| seen.insert(edge.as_undirected().fix()));
     let ends = once.map(|edge| edge.vertices().map(|v| *v.data()));
-    ends.map(|ends| (unordered(ends.map(|c| c.point)), ends))
-        .collect()
+    ends.map(|ends| FreeSide {
+        points: unordered(ends.map(|c| c.point)),
+        ends,
+    })
+    .collect()
 }
 
 /// The sides of a face's seams.

@@ -33,15 +33,19 @@ impl DetectabilityPrior {
     pub(crate) fn rates(&self, arc: &PredictedContour, arcs: &[PredictedContour]) -> Rates {
         let alone = self.alone(arc);
         let known = self.codetection.get(&arc.source);
-        let parent = known.and_then(|(source, given)| {
-            let at = arcs.iter().position(|a| a.source == *source)?;
-            Some((at, given.map(|p| p.clamp(MIN_RATE, 1.0 - MIN_RATE))))
+        let visible = known.and_then(|known| {
+            let parent = arcs.iter().position(|a| a.source == known.source)?;
+            Some(Rates {
+                parent: Some(parent),
+                given: known.given.map(|p| p.clamp(MIN_RATE, 1.0 - MIN_RATE)),
+                alone,
+            })
         });
-        Rates {
-            parent: parent.map(|p| p.0),
-            given: parent.map_or([alone; 2], |p| p.1),
+        visible.unwrap_or(Rates {
+            parent: None,
+            given: [alone; 2],
             alone,
-        }
+        })
     }
 
     /// Arcs in falling order of detectability, each after the one that it depends on.

@@ -6,7 +6,7 @@ use crate::correspondence::FeatureChoice;
 use crate::correspondence::predicted_contours::PredictedContour;
 use crate::image::ImageFeatures;
 use crate::part::SoughtPart;
-use crate::part::detectability_prior::DetectabilityPrior;
+use crate::part::detectability_prior::{DetectabilityPrior, JunctionRates};
 use nalgebra::{Point2, Point3, Vector2};
 use premio_detect::SegmentShape;
 use premio_kernel::brep::topology::VertexId;
@@ -111,9 +111,9 @@ impl Tip {
 }
 
 /// By pair of candidates: the log-likelihood ratio that both end at the common vertex, or that not
-/// both do. `kept` is the probability that a junction is preserved where the part is, `chance` by
-/// clutter.
-fn scores(a: &Tip, b: &Tip, [kept, chance]: [f64; 2]) -> BTreeMap<(usize, usize), f64> {
+/// both do.
+fn scores(a: &Tip, b: &Tip, rates: JunctionRates) -> BTreeMap<(usize, usize), f64> {
+    let JunctionRates { kept, chance } = rates;
     let ratio = |both: bool| match both {
         true => (kept / chance).ln(),
         false => ((1.0 - kept) / (1.0 - chance)).ln(),
@@ -140,7 +140,7 @@ fn tips(
         .map(|s| part.brep.topology.edge(part.strokes[s].edge));
     let vertices = edge.and_then(|e| e.ends).into_iter().flatten();
     let tips = vertices.filter_map(|vertex| {
-        let (at, outwards) = leaves(arc, &part.brep.point(vertex))?;
+        let ArcEnd { at, outwards } = arc_end(arc, &part.brep.point(vertex))?;
         let beyond = at + outwards * BEYOND;
         picture.edges.reaches(&at).then(|| Tip {
             vertex,
@@ -156,9 +156,15 @@ fn tips(
     tips.collect()
 }
 
-/// The end of an arc's image at a vertex, and the unit vector that leaves the arc there; none where
-/// neither end is near the vertex.
-fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, Vector2<f64>)> {
+/// An end of an arc's image.
+struct ArcEnd {
+    at: Point2<f64>,
+    /// The unit vector that leaves the arc there.
+    outwards: Vector2<f64>,
+}
+
+/// The end of an arc's image at a vertex; none where neither end is near the vertex.
+fn arc_end(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<ArcEnd> {
     let last = arc.points.len().checked_sub(1)?;
     let distance = |k: usize| (arc.points[k].point - vertex).norm();
     let (end, next) = if distance(0) < distance(last) {
@@ -172,7 +178,8 @@ fn leaves(arc: &PredictedContour, vertex: &Point3<f64>) -> Option<(Point2<f64>, 
         return None;
     }
     let (at, before) = (arc.points[end].image.at, arc.points[next].image.at);
-    Some((at, (at - before).try_normalize(0.0)?))
+    let outwards = (at - before).try_normalize(0.0)?;
+    Some(ArcEnd { at, outwards })
 }
 
 /// How an edge ends that extends by `farthest` pixels beyond a vertex, where another arc explains

@@ -98,14 +98,10 @@ impl Correspondence {
         picture: &ImageFeatures,
         arcs: &[PredictedContour],
     ) -> Self {
-        let inside = |arc: &PredictedContour| {
-            let visible = arc
-                .points
-                .iter()
-                .filter(|p| picture.edges.reaches(&p.image.at));
-            visible.map(|p| p.image.length).sum::<f64>()
-        };
-        let lengths: Vec<f64> = arcs.iter().map(inside).collect();
+        let lengths: Vec<f64> = arcs
+            .iter()
+            .map(|arc| visible_length(arc, picture))
+            .collect();
         let clutter = Clutter::about(picture, arcs);
         let long = (0..arcs.len()).filter(|&i| lengths[i] >= SHORTEST);
         let order = learned.order(long.collect(), arcs);
@@ -124,37 +120,18 @@ impl Correspondence {
                 choice.ends = ends.counts(k, c);
             }
         }
-        let place: BTreeMap<usize, usize> =
-            order.iter().enumerate().map(|(k, &i)| (i, k)).collect();
-        let features = order.iter().zip(&choices).map(|(&i, choices)| {
-            let rates = learned.rates(&arcs[i], arcs);
-            let parent = rates.parent.and_then(|p| place.get(&p).copied());
-            // The effect of the parent's state.
-            let at_all = |given: [f64; 2]| match parent {
-                Some(_) => given,
-                None => [rates.alone; 2],
-            };
-            let given = at_all(rates.given);
-            let missed = likelihood(lengths[i], 0.0, learned.covered(&arcs[i]));
-            let tilt_deviation = ASKEW.hypot(END / lengths[i]);
-            ProblemFeature {
-                parent,
-                found: given.map(|p| (p / rates.alone).ln()),
-                missed: given.map(|p| missed + ((1.0 - p) / (1.0 - rates.alone)).ln()),
-                candidates: choices
-                    .iter()
-                    .map(|c| Candidate {
-                        score: c.likely
-                            + attributes(c, &arcs[i], lengths[i], tilt_deviation, &clutter),
-                        pieces: c.pieces(),
-                    })
-                    .collect(),
-            }
-        });
-        let features: Vec<ProblemFeature> = features.collect();
+        let scorer = FeatureScorer {
+            learned,
+            arcs,
+            lengths: &lengths,
+            places: order.iter().enumerate().map(|(k, &i)| (i, k)).collect(),
+            clutter: &clutter,
+        };
+        let features = order.iter().zip(&choices);
+        let features = features.map(|(&i, choices)| scorer.feature(i, choices));
         Self {
             problem: Problem {
-                features,
+                features: features.collect(),
                 relations: ends.relations(learned, arcs, &order),
             },
             lengths: order.iter().map(|&i| lengths[i]).collect(),
@@ -174,6 +151,52 @@ impl Correspondence {
             choice.map_or(Vec::new(), |c| choices[c].pulls(&arcs[i]))
         });
         all.collect()
+    }
+}
+
+/// The length of an arc in the image where edges are found, in pixels.
+fn visible_length(arc: &PredictedContour, picture: &ImageFeatures) -> f64 {
+    let visible = arc
+        .points
+        .iter()
+        .filter(|p| picture.edges.reaches(&p.image.at));
+    visible.map(|p| p.image.length).sum()
+}
+
+/// Scores the features of a problem.
+struct FeatureScorer<'a> {
+    learned: &'a DetectabilityPrior,
+    arcs: &'a [PredictedContour],
+    /// By arc: its length in the image, in pixels.
+    lengths: &'a [f64],
+    /// By arc that is searched for: its index among the features.
+    places: BTreeMap<usize, usize>,
+    clutter: &'a Clutter,
+}
+
+impl FeatureScorer<'_> {
+    /// The feature of an arc, with its candidates.
+    fn feature(&self, i: usize, choices: &[FeatureChoice]) -> ProblemFeature {
+        let (arc, length) = (&self.arcs[i], self.lengths[i]);
+        let rates = self.learned.rates(arc, self.arcs);
+        let parent = rates.parent.and_then(|p| self.places.get(&p).copied());
+        // The effect of the parent's state.
+        let given = match parent {
+            Some(_) => rates.given,
+            None => [rates.alone; 2],
+        };
+        let missed = likelihood(length, 0.0, self.learned.covered(arc));
+        let tilt_deviation = ASKEW.hypot(END / length);
+        let candidate = |c: &FeatureChoice| Candidate {
+            score: c.likely + attributes(c, arc, length, tilt_deviation, self.clutter),
+            pieces: c.pieces(),
+        };
+        ProblemFeature {
+            parent,
+            found: given.map(|p| (p / rates.alone).ln()),
+            missed: given.map(|p| missed + ((1.0 - p) / (1.0 - rates.alone)).ln()),
+            candidates: choices.iter().map(candidate).collect(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::camera::Pinhole;
 use crate::image::{ImageFeatures, Reach, bin};
-use crate::part::{EdgeSample, PartView, SampledEdge, SoughtPart};
+use crate::part::{EdgeEnd, EdgeSample, PartView, SampledEdge, SoughtPart};
 use nalgebra::{Isometry3, Point2, Point3, Vector2};
 
 /// The contour length in pixels that counts as one observation: neighbouring edge pixels are
@@ -123,7 +123,7 @@ fn ends(
     stroke: &SampledEdge,
 ) -> f64 {
     let Some(ends) = &stroke.ends else { return 0.0 };
-    let likelihoods = ends.iter().map(|(point, outwards)| {
+    let likelihoods = ends.iter().map(|EdgeEnd { point, outwards }| {
         let p = pose * point;
         let ahead = pose * (point + outwards * (stroke.length / 64.0));
         if p.z <= 0.0 || ahead.z <= 0.0 {

@@ -2,6 +2,7 @@
 
 use super::lines::ImageLine;
 use nalgebra::{Point2, Vector2};
+use std::cmp::Ordering;
 
 /// The greatest gap between the end of a line and a corner: in pixels, plus a share of the line's
 /// length.
@@ -52,8 +53,11 @@ impl LinePath {
         }
     }
 
-    fn key(&self) -> (&[u32], u32, u32) {
-        (&self.middle, self.corners[0].line, self.corners[1].line)
+    /// The order of chains with equal scores: by the indices of their lines.
+    fn order(&self, other: &Self) -> Ordering {
+        let ends = |path: &Self| path.corners.map(|c| c.line);
+        let middle = self.middle.cmp(&other.middle);
+        middle.then_with(|| ends(self).cmp(&ends(other)))
     }
 }
 
@@ -76,34 +80,40 @@ pub fn chains(lines: &[ImageLine], most: usize) -> [Vec<LinePath>; 2] {
             }
         }
     }
-    for (i, j, [far, other], gap) in meeting(&lines[..all.len()]) {
-        for a in &all[i][far] {
-            for b in &all[j][other] {
+    for pair in nearby_ends(&lines[..all.len()]) {
+        let [i, j] = pair.lines;
+        for a in &all[i][pair.far_ends[0]] {
+            for b in &all[j][pair.far_ends[1]] {
                 let four = a.line != b.line && a.line as usize != j && b.line as usize != i;
                 if four {
                     found[1].push(LinePath::new(
                         lines,
                         vec![i as u32, j as u32],
                         [*a, *b],
-                        gap,
+                        pair.gap,
                     ));
                 }
             }
         }
     }
     for all in &mut found {
-        all.sort_by(|a, b| {
-            b.worth
-                .total_cmp(&a.worth)
-                .then_with(|| a.key().cmp(&b.key()))
-        });
+        all.sort_by(|a, b| b.worth.total_cmp(&a.worth).then_with(|| a.order(b)));
         all.truncate(most);
     }
     found
 }
 
-/// The pairs of lines with nearby ends: the lines, their other ends, and the gap in pixels.
-fn meeting(lines: &[ImageLine]) -> Vec<(usize, usize, [usize; 2], f64)> {
+/// A pair of lines with nearby ends.
+struct LinePair {
+    lines: [usize; 2],
+    /// The index of each line's other end.
+    far_ends: [usize; 2],
+    /// The gap in pixels.
+    gap: f64,
+}
+
+/// The pairs of lines with nearby ends.
+fn nearby_ends(lines: &[ImageLine]) -> Vec<LinePair> {
     let mut all = Vec::new();
     for (i, a) in lines.iter().enumerate() {
         for (j, b) in lines.iter().enumerate().skip(i + 1) {
@@ -115,7 +125,11 @@ fn meeting(lines: &[ImageLine]) -> Vec<(usize, usize, [usize; 2], f64)> {
                     |l: &ImageLine, end: usize| if end == 0 { l.direction } else { -l.direction };
                 let turns = way(a, p).dot(&way(b, q)) < 1.0 - SHARP;
                 if gap < slack && turns {
-                    all.push((i, j, [1 - p, 1 - q], gap));
+                    all.push(LinePair {
+                        lines: [i, j],
+                        far_ends: [1 - p, 1 - q],
+                        gap,
+                    });
                 }
             }
         }

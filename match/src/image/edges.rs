@@ -53,9 +53,19 @@ fn pieces(detection: &Detection) -> Vec<u32> {
     all
 }
 
-/// By edge pixel: the unit normal of its segment, and the segment's length in pixels and index. On
-/// a curved segment the normal is the pixel's gradient.
-fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)>> {
+/// The segment of an edge pixel.
+#[derive(Clone, Copy)]
+struct PixelSegment {
+    /// The unit normal. On a curved segment it is the pixel's gradient.
+    normal: Vector2<f64>,
+    /// The length of the segment, in pixels.
+    length: f64,
+    /// The index of the segment.
+    segment: u32,
+}
+
+/// By edge pixel: its segment.
+fn pixel_segments(detection: &Detection) -> Vec<Option<PixelSegment>> {
     let mut all = vec![None; detection.pixels.len()];
     for (number, segment) in (0..).zip(&detection.segments) {
         let [from, to] = segment.range.map(|n| n as usize);
@@ -66,9 +76,11 @@ fn segment_normals(detection: &Detection) -> Vec<Option<(Vector2<f64>, f64, u32)
                 SegmentShape::Line { ends: [a, b] } => Vector2::new(a[1] - b[1], b[0] - a[0]),
                 _ => gradient,
             };
-            all[pixel as usize] = normal
-                .try_normalize(0.0)
-                .map(|n| (n, pixels.len() as f64, number));
+            all[pixel as usize] = normal.try_normalize(0.0).map(|normal| PixelSegment {
+                normal,
+                length: pixels.len() as f64,
+                segment: number,
+            });
         }
     }
     all
@@ -128,12 +140,20 @@ impl Edges {
             near: Reach::ALL.map(|_| vec![0; width * height]),
             pixels: Vec::with_capacity(detection.pixels.len()),
         };
-        let across = segment_normals(detection);
+        let across = pixel_segments(detection);
         let pieces = pieces(detection);
         for (number, pixel) in detection.pixels.iter().enumerate() {
             let gradient = Vector2::from(pixel.gradient);
             let own = gradient / gradient.norm().max(f64::MIN_POSITIVE);
-            let (normal, length, segment) = across[number].unwrap_or((own, 0.0, u32::MAX));
+            let PixelSegment {
+                normal,
+                length,
+                segment,
+            } = across[number].unwrap_or(PixelSegment {
+                normal: own,
+                length: 0.0,
+                segment: u32::MAX,
+            });
             let at = Point2::from(pixel.at);
             edges.pixels.push(Pixel {
                 at,

@@ -236,11 +236,31 @@ pub struct MatchReport {
     pub seconds: MatchSeconds,
 }
 
+/// The names in a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReportNames<'a> {
+    /// The name of the picture.
+    pub image: &'a str,
+    /// The name of the part.
+    pub part: &'a str,
+}
+
+/// The numbers of a line of the BOP challenge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BopIds {
+    /// The scene.
+    pub scene: u32,
+    /// The picture of the scene.
+    pub image: u32,
+    /// The object.
+    pub object: u32,
+}
+
 impl MatchReport {
     /// The report of a search.
     pub fn new(
         part: &SoughtPart<'_>,
-        [image, name]: [&str; 2],
+        names: ReportNames<'_>,
         picture: &ImageFeatures,
         finding: &SearchResult,
         scale: u32,
@@ -250,8 +270,8 @@ impl MatchReport {
         let found = best.is_some_and(PartMatch::is_accepted);
         Self {
             schema: SCHEMA.to_owned(),
-            image: image.to_owned(),
-            part: name.to_owned(),
+            image: names.image.to_owned(),
+            part: names.part.to_owned(),
             found,
             reason: (!found).then(|| reason(part, picture, finding)),
             probability: best.map_or(0.0, PartMatch::probability),
@@ -287,7 +307,12 @@ impl MatchReport {
     }
 
     /// The line of the BOP challenge: scene, image and object, score, R and t, and the time.
-    pub fn bop(&self, [scene, image, object]: [u32; 3]) -> Option<String> {
+    pub fn bop(&self, ids: BopIds) -> Option<String> {
+        let BopIds {
+            scene,
+            image,
+            object,
+        } = ids;
         let pose = self.pose.filter(|_| self.found)?;
         let words = |all: &[f64]| {
             let words: Vec<String> = all.iter().map(f64::to_string).collect();

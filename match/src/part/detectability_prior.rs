@@ -15,14 +15,31 @@ struct States {
     counts: [f64; 3],
 }
 
+/// The feature that the detection of another one depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CodetectionParent {
+    pub source: ArcSource,
+    /// The probabilities that the other one is found, where this one is missed and where it is
+    /// found.
+    pub given: [f64; 2],
+}
+
+/// The rates at which a junction of two found features is preserved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JunctionRates {
+    /// The probability where the part is.
+    pub kept: f64,
+    /// The probability by chance, for clutter.
+    pub chance: f64,
+}
+
 /// The detectability of a part's features.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DetectabilityPrior {
     /// By feature: its states with two visible faces, and as an outline.
     states: BTreeMap<ArcSource, [States; 2]>,
-    /// By feature: the one it depends on, and the probabilities that it is found where that is
-    /// missed and where it is found.
-    pub(crate) codetection: BTreeMap<ArcSource, (ArcSource, [f64; 2])>,
+    /// By feature: the one it depends on.
+    pub(crate) codetection: BTreeMap<ArcSource, CodetectionParent>,
     /// By pair of features with a junction: how often both are found, and how often their junction
     /// is then preserved.
     junctions: BTreeMap<[ArcSource; 2], [f64; 2]>,
@@ -107,7 +124,9 @@ impl DetectabilityPrior {
                             let row = node.table.get(state);
                             row.map_or(0.5, |r| r[2] / (r[1] + r[2]).max(f64::MIN_POSITIVE))
                         });
-                        learned.codetection.insert(*own, (*parent, given));
+                        let source = *parent;
+                        let parent = CodetectionParent { source, given };
+                        learned.codetection.insert(*own, parent);
                     }
                 }
                 _ => {}
@@ -132,16 +151,20 @@ impl DetectabilityPrior {
         })
     }
 
-    /// The probabilities that the junction of two features is preserved where both are found, and
-    /// by chance.
-    pub(crate) fn junction(&self, a: &ArcSource, b: &ArcSource) -> [f64; 2] {
+    /// The rates at which the junction of two features is preserved.
+    pub(crate) fn junction(&self, a: &ArcSource, b: &ArcSource) -> JunctionRates {
         if self.uniform {
-            return [0.5; 2];
+            return JunctionRates {
+                kept: 0.5,
+                chance: 0.5,
+            };
         }
         let [seen, kept] = self.junctions.get(&pair(a, b)).copied().unwrap_or_default();
         let kept = (kept + PRIOR * JUNCTION[0]) / (seen + PRIOR);
-        let kept = kept.clamp(0.5, 1.0 - MIN_RATE);
-        [kept, self.chance.clamp(JUNCTION[1], 0.5)]
+        JunctionRates {
+            kept: kept.clamp(0.5, 1.0 - MIN_RATE),
+            chance: self.chance.clamp(JUNCTION[1], 0.5),
+        }
     }
 }
 

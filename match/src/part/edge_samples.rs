@@ -20,10 +20,19 @@ pub struct SampledEdge {
     /// The probabilities that it is whole, broken and missed where it is visible: with both its
     /// faces, and with one of them, as an outline.
     pub states: [[f64; 3]; 2],
-    /// Its ends, where it has any, and the unit tangents there that point away from it.
-    pub ends: Option<[(Point3<f64>, Vector3<f64>); 2]>,
+    /// Its ends, where it has any.
+    pub ends: Option<[EdgeEnd; 2]>,
     /// Its length.
     pub length: f64,
+}
+
+/// An end of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeEnd {
+    /// The point.
+    pub point: Point3<f64>,
+    /// The unit tangent that points away from the edge.
+    pub outwards: Vector3<f64>,
 }
 
 /// A point of an edge or of a limb.
@@ -115,7 +124,10 @@ pub fn marks(brep: &Brep, radius: f64, states: impl Fn(EdgeId) -> [[f64; 3]; 2])
             marks: start..marks.len(),
             states: states(edge),
             ends: brep.topology.edge(edge).ends.map(|_| {
-                let end = |t: f64, sign: f64| (curve.point(t), curve.tangent(t) * sign);
+                let end = |t: f64, sign: f64| EdgeEnd {
+                    point: curve.point(t),
+                    outwards: curve.tangent(t) * sign,
+                };
                 [end(from, -1.0), end(to, 1.0)]
             }),
             length,

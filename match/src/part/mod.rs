@@ -9,7 +9,7 @@ mod visibility_cache;
 
 pub(crate) use chain::PartChain;
 use edge_samples::SampledEdges;
-pub(crate) use edge_samples::{EdgeSample, PartView, SampledEdge};
+pub(crate) use edge_samples::{EdgeEnd, EdgeSample, PartView, SampledEdge};
 pub(crate) use symmetry::Symmetry;
 
 use crate::part::detectability_prior::DetectabilityPrior;

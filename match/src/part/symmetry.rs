@@ -97,6 +97,12 @@ pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> 
 type Sides = [[Vector3<f64>; 2]; 2];
 
 /// The edges of a part.
+/// A point of an edge, with the directions on both sides.
+struct SidedPoint {
+    point: Point3<f64>,
+    sides: Sides,
+}
+
 struct Edges<'a> {
     brep: &'a Brep,
     strokes: &'a [SampledEdge],
@@ -106,7 +112,7 @@ struct Edges<'a> {
     /// By edge: the vector from there to its own centroid.
     to: Vec<Vector3<f64>>,
     /// By edge: three points with the directions on both sides.
-    points: Vec<[(Point3<f64>, Sides); 3]>,
+    points: Vec<[SidedPoint; 3]>,
     /// The faces without sharp edges.
     others: Vec<FaceId>,
 }
@@ -125,7 +131,10 @@ impl<'a> Edges<'a> {
             let own = &marks[s.marks.clone()];
             [0, own.len() / 2, own.len() - 1].map(|k| {
                 let mark = &own[k];
-                (mark.point, sides(brep, s.edge, mark.parameter))
+                SidedPoint {
+                    point: mark.point,
+                    sides: sides(brep, s.edge, mark.parameter),
+                }
             })
         };
         Self {
@@ -241,15 +250,17 @@ impl<'a> Edges<'a> {
         }
         let edge = self.strokes[b].edge;
         let curve = self.brep.curve(edge);
-        self.points[a].iter().all(|(point, own)| {
-            let to = turn * point;
-            let parameter = curve.parameter(&to);
-            let others = sides(self.brep, edge, parameter);
-            let own = own.map(|side| side.map(|v| turn.rotation * v));
-            let same = |k: usize, l: usize| (0..2).all(|i| along(&own[k][i], &others[l][i]));
-            near(&to.coords, &curve.point(parameter).coords)
-                && (same(0, 0) && same(1, 1) || same(0, 1) && same(1, 0))
-        })
+        self.points[a]
+            .iter()
+            .all(|SidedPoint { point, sides: own }| {
+                let to = turn * point;
+                let parameter = curve.parameter(&to);
+                let others = sides(self.brep, edge, parameter);
+                let own = own.map(|side| side.map(|v| turn.rotation * v));
+                let same = |k: usize, l: usize| (0..2).all(|i| along(&own[k][i], &others[l][i]));
+                near(&to.coords, &curve.point(parameter).coords)
+                    && (same(0, 0) && same(1, 1) || same(0, 1) && same(1, 0))
+            })
     }
 }
 

@@ -38,8 +38,9 @@ pub fn circles(conic: &[f64; 6], camera: &Pinhole, radius: f64) -> Vec<SeenCircl
         return Vec::new();
     };
     // The planes are a v₁ + b v₃ and a v₁ − b v₃.
-    let (a, b) = (first.0 / middle.0 - 1.0, 1.0 - last.0 / middle.0);
-    let [v, w] = [first.1 * a.sqrt(), last.1 * b.sqrt()];
+    let a = first.eigenvalue / middle.eigenvalue - 1.0;
+    let b = 1.0 - last.eigenvalue / middle.eigenvalue;
+    let [v, w] = [first.eigenvector * a.sqrt(), last.eigenvector * b.sqrt()];
     let planes = [[w + v, v - w], [w - v, -w - v]];
     let count = if a > ROUND * b { 2 } else { 1 };
     let circle = |[p, q]: &[Vector3<f64>; 2]| {
@@ -57,9 +58,15 @@ pub fn circles(conic: &[f64; 6], camera: &Pinhole, radius: f64) -> Vec<SeenCircl
     planes[..count].iter().filter_map(circle).collect()
 }
 
-/// The eigenvalues of the cone of a conic in falling order, two positive and one negative, with
-/// their eigenvectors.
-fn axes(conic: &[f64; 6], camera: &Pinhole) -> Option<[(f64, Vector3<f64>); 3]> {
+/// An axis of a cone.
+struct ConeAxis {
+    eigenvalue: f64,
+    eigenvector: Vector3<f64>,
+}
+
+/// The axes of the cone of a conic in falling order of the eigenvalues, two positive and one
+/// negative.
+fn axes(conic: &[f64; 6], camera: &Pinhole) -> Option<[ConeAxis; 3]> {
     let [a, b, c, d, e, f] = *conic;
     let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
     let k = camera.matrix();
@@ -72,15 +79,13 @@ fn axes(conic: &[f64; 6], camera: &Pinhole) -> Option<[(f64, Vector3<f64>); 3]> 
     // With two eigenvalues of another sign the determinant has that of the third.
     let cone = cone * -cone.determinant().signum();
     let eigen = SymmetricEigen::new(cone);
-    let axis = |i: usize| {
-        (
-            eigen.eigenvalues[i],
-            eigen.eigenvectors.column(i).into_owned(),
-        )
+    let axis = |i: usize| ConeAxis {
+        eigenvalue: eigen.eigenvalues[i],
+        eigenvector: eigen.eigenvectors.column(i).into_owned(),
     };
     let mut axes = [axis(0), axis(1), axis(2)];
-    axes.sort_by(|p, q| q.0.total_cmp(&p.0));
-    (axes[1].0 > 0.0 && axes[2].0 < 0.0).then_some(axes)
+    axes.sort_by(|p, q| q.eigenvalue.total_cmp(&p.eigenvalue));
+    (axes[1].eigenvalue > 0.0 && axes[2].eigenvalue < 0.0).then_some(axes)
 }
 
 /// The poses of the part in the camera's frame at which a circular edge of the part is a given

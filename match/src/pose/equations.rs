@@ -15,13 +15,22 @@ pub const DISTINCT: f64 = 1.0 / (1 << 10) as f64;
 /// Steps of Newton's method: at a double root each gains one binary digit.
 const ROUNDS: usize = 64;
 
+/// The values of three equations, and their derivatives by a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearised {
+    /// The values.
+    pub value: Vector3<f64>,
+    /// The derivatives.
+    pub slope: Matrix3<f64>,
+}
+
 /// Three equations.
 pub trait Equations {
     /// The type of the unknowns.
     type Unknown: Clone;
 
     /// The values that are to be zero, and their derivatives by a step.
-    fn value(&self, at: &Self::Unknown) -> (Vector3<f64>, Matrix3<f64>);
+    fn value(&self, at: &Self::Unknown) -> Linearised;
 
     /// The residual, scaled so that [`SOLVED`] applies to all equations.
     fn miss(&self, at: &Self::Unknown) -> f64;
@@ -35,16 +44,16 @@ pub trait Equations {
     /// The root near a start, if there is one.
     fn solution(&self, start: Self::Unknown) -> Option<Self::Unknown> {
         let mut at = start;
-        let (mut value, mut slope) = self.value(&at);
+        let mut known = self.value(&at);
         let mut damping = None;
         for _ in 0..ROUNDS {
-            let Some(step) = descent(&slope, &value, &mut damping) else {
+            let Some(step) = descent(&known.slope, &known.value, &mut damping) else {
                 break;
             };
             let next = self.stepped(&at, &step);
-            let (v, s) = self.value(&next);
-            if v.norm() < value.norm() {
-                (at, value, slope, damping) = (next, v, s, None);
+            let stepped = self.value(&next);
+            if stepped.value.norm() < known.value.norm() {
+                (at, known, damping) = (next, stepped, None);
             }
         }
         (self.miss(&at) <= SOLVED).then_some(at)
@@ -57,7 +66,7 @@ pub trait Equations {
             let Some(middle) = self.middle(other, &root) else {
                 continue;
             };
-            let (value, slope) = self.value(&middle);
+            let Linearised { value, slope } = self.value(&middle);
             let middle = self.stepped(&middle, &across(&slope, &value));
             let ends = [self.miss(other), self.miss(&root)];
             let between = self.miss(&middle);

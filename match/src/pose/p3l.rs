@@ -12,7 +12,7 @@
 //! are only starts: Newton's method refines each on the three equations, which decide whether it is
 //! a solution.
 
-use super::equations::{DISTINCT, Equations as Solved};
+use super::equations::{DISTINCT, Equations as Solved, Linearised};
 use super::polynomial::proposals;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_kernel::geometry::frame::Frame;
@@ -103,7 +103,7 @@ impl Equations {
 
     /// Whether the equations also hold for further rotations about an axis.
     fn is_free(&self, rotation: &UnitQuaternion<f64>) -> bool {
-        let (_, slope) = self.value(rotation);
+        let slope = self.value(rotation).slope;
         if slope.determinant().abs() > FLAT {
             return false;
         }
@@ -124,15 +124,18 @@ impl Solved for Equations {
 
     /// The cosines that are to be zero, and their derivatives by a rotation about the camera's
     /// axes.
-    fn value(&self, rotation: &UnitQuaternion<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+    fn value(&self, rotation: &UnitQuaternion<f64>) -> Linearised {
         let turned = self.directions.map(|d| rotation * d);
         let value = [0, 1, 2].map(|i| self.normals[i].dot(&turned[i]));
         let slope = [0, 1, 2].map(|i| turned[i].cross(&self.normals[i]).transpose());
-        (Vector3::from(value), Matrix3::from_rows(&slope))
+        Linearised {
+            value: Vector3::from(value),
+            slope: Matrix3::from_rows(&slope),
+        }
     }
 
     fn miss(&self, rotation: &UnitQuaternion<f64>) -> f64 {
-        self.value(rotation).0.amax()
+        self.value(rotation).value.amax()
     }
 
     fn stepped(&self, at: &UnitQuaternion<f64>, step: &Vector3<f64>) -> UnitQuaternion<f64> {

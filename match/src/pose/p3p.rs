@@ -8,7 +8,7 @@
 //! the pencil, so it treats all its cones alike. Newton's method refines each proposal on the three
 //! equations, which decide whether it is a solution.
 
-use super::equations::{DISTINCT, Equations as Solved};
+use super::equations::{DISTINCT, Equations as Solved, Linearised};
 use super::polynomial::crossings;
 use nalgebra::{
     Isometry3, Matrix3, Point3, Rotation3, SymmetricEigen, Translation3, UnitQuaternion, Vector3,
@@ -107,7 +107,7 @@ impl Solved for Equations {
     type Unknown = Vector3<f64>;
 
     /// The relative errors of the squared side lengths, and their derivatives by the depths.
-    fn value(&self, depths: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+    fn value(&self, depths: &Vector3<f64>) -> Linearised {
         let mut value = Vector3::zeros();
         let mut slope = Matrix3::zeros();
         for (k, square) in self.squares.iter().enumerate() {
@@ -118,12 +118,12 @@ impl Solved for Equations {
             slope[(k, i)] = 2.0 * self.rays[i].dot(&side) / square;
             slope[(k, j)] = -2.0 * self.rays[j].dot(&side) / square;
         }
-        (value, slope)
+        Linearised { value, slope }
     }
 
     /// The residual, in units of the rounding error for a distant part.
     fn miss(&self, depths: &Vector3<f64>) -> f64 {
-        self.value(depths).0.amax() / (1.0 + depths.max() / self.shortest)
+        self.value(depths).value.amax() / (1.0 + depths.max() / self.shortest)
     }
 
     fn stepped(&self, at: &Vector3<f64>, step: &Vector3<f64>) -> Vector3<f64> {

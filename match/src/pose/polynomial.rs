@@ -5,17 +5,19 @@
 //! they are roots.
 
 use nalgebra::{Matrix3, Vector3};
-use premio_kernel::number::bisection::bisect_newton;
+use premio_kernel::number::bisection::{ValueAndSlope, bisect_newton};
 
 /// An extremum is a possible double root if its magnitude is at most this share of the sum of the
 /// coefficients' magnitudes.
 const NEAR: f64 = 1.0 / (1 << 20) as f64;
 
 /// The value and the derivative; `k[i]` is the coefficient of the i-th power.
-fn value(k: &[f64], x: f64) -> (f64, f64) {
-    k.iter()
+fn value(k: &[f64], x: f64) -> ValueAndSlope {
+    let (value, slope) = k
+        .iter()
         .rev()
-        .fold((0.0, 0.0), |(v, d), c| (v * x + c, d * x + v))
+        .fold((0.0, 0.0), |(v, d), c| (v * x + c, d * x + v));
+    ValueAndSlope { value, slope }
 }
 
 fn slope(k: &[f64]) -> Vec<f64> {
@@ -35,9 +37,9 @@ pub fn crossings(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
 /// The sign changes between known extrema.
 fn between(k: &[f64], [lo, hi]: [f64; 2], extrema: &[f64]) -> Vec<f64> {
     let mut found = Vec::new();
-    let (mut a, mut va) = (lo, value(k, lo).0);
+    let (mut a, mut va) = (lo, value(k, lo).value);
     for &b in extrema.iter().chain([&hi]) {
-        let vb = value(k, b).0;
+        let vb = value(k, b).value;
         if (va < 0.0) != (vb < 0.0) {
             found.push(bisect_newton(a, b, va, |x| value(k, x)));
         }
@@ -53,7 +55,7 @@ pub fn proposals(k: &[f64], ends: [f64; 2]) -> Vec<f64> {
     let mut found = between(k, ends, &extrema);
     let near = NEAR * k.iter().map(|c| c.abs()).sum::<f64>();
     let others = extrema.into_iter().chain(ends);
-    found.extend(others.filter(|x| value(k, *x).0.abs() <= near));
+    found.extend(others.filter(|x| value(k, *x).value.abs() <= near));
     found
 }
 

@@ -26,8 +26,10 @@ pub struct Refined {
     /// The information matrix JᵀWJ: of the rotation, in radians about the camera's axes through the
     /// part's origin, and of the translation.
     pub information: Matrix6<f64>,
-    /// The weighted sum of squared distances, and the sum of weights.
-    pub squares: [f64; 2],
+    /// The weighted sum of squared distances.
+    pub squares: f64,
+    /// The sum of weights.
+    pub weights: f64,
 }
 
 /// The pose after a step: the rotation of the part about its origin in the camera's axes, and the
@@ -40,13 +42,21 @@ pub fn moved(pose: &Isometry3<f64>, step: &Vector6<f64>) -> Isometry3<f64> {
     next
 }
 
-/// The signed distance of a point's image from its edge along the normal, and its derivatives; none
-/// where the point is not in front of the camera.
+/// The signed distance of a point's image from its edge along the normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PullResidual {
+    /// The distance, in pixels.
+    pub off: f64,
+    /// Its derivatives by a step of the pose.
+    pub by_pose: Vector6<f64>,
+}
+
+/// The residual of a point at a pose; none where the point is not in front of the camera.
 pub(crate) fn residual(
     camera: &Pinhole,
     pose: &Isometry3<f64>,
     pull: &PointToLine,
-) -> Option<(f64, Vector6<f64>)> {
+) -> Option<PullResidual> {
     let turned = pose.rotation * pull.point.coords;
     let p = turned + pose.translation.vector;
     if p.z <= 0.0 {
@@ -62,7 +72,8 @@ pub(crate) fn residual(
     let dy = n.x * s + n.y * fy;
     let g = Vector3::new(dx, dy, -(dx * x + dy * y)) / p.z;
     let turn = turned.cross(&g);
-    Some((off, Vector6::new(turn.x, turn.y, turn.z, g.x, g.y, g.z)))
+    let by_pose = Vector6::new(turn.x, turn.y, turn.z, g.x, g.y, g.z);
+    Some(PullResidual { off, by_pose })
 }
 
 /// Tukey's weight of a distance: zero beyond the scale.
@@ -75,32 +86,51 @@ fn tukey(off: f64, scale: f64) -> f64 {
     }
 }
 
-fn normal_equations(
-    camera: &Pinhole,
-    pose: &Isometry3<f64>,
-    pulls: &[PointToLine],
-    scale: f64,
-) -> (Matrix6<f64>, Vector6<f64>, [f64; 3]) {
-    let mut h = Matrix6::zeros();
-    let mut g = Vector6::zeros();
-    let mut sums = [0.0; 3];
-    for pull in pulls {
-        let Some((off, j)) = residual(camera, pose, pull) else {
-            sums[2] += pull.weight * scale * scale / 6.0;
-            continue;
+/// The normal equations of a pose, and the sums over its residuals.
+struct NormalEquations {
+    /// JᵀWJ.
+    information: Matrix6<f64>,
+    /// JᵀWr.
+    gradient: Vector6<f64>,
+    /// The weighted sum of squared distances.
+    squares: f64,
+    /// The sum of weights.
+    weights: f64,
+    /// The sum of the robust losses.
+    loss: f64,
+}
+
+impl NormalEquations {
+    fn new(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine], scale: f64) -> Self {
+        let mut sums = Self {
+            information: Matrix6::zeros(),
+            gradient: Vector6::zeros(),
+            squares: 0.0,
+            weights: 0.0,
+            loss: 0.0,
         };
-        let w = pull.weight * tukey(off, scale);
+        for pull in pulls {
+            sums.add(residual(camera, pose, pull), pull.weight, scale);
+        }
+        sums
+    }
+
+    fn add(&mut self, residual: Option<PullResidual>, weight: f64, scale: f64) {
+        let Some(PullResidual { off, by_pose }) = residual else {
+            self.loss += weight * scale * scale / 6.0;
+            return;
+        };
+        let w = weight * tukey(off, scale);
         let u2 = (off / scale).powi(2).min(1.0);
         // Tukey's loss, (c²/6) (1 - (1 - u²)³), expanded so that small distances keep their digits.
-        sums[2] += pull.weight * scale * scale / 6.0 * u2 * (3.0 - u2 * (3.0 - u2));
+        self.loss += weight * scale * scale / 6.0 * u2 * (3.0 - u2 * (3.0 - u2));
         if w > 0.0 {
-            h.ger(w, &j, &j, 1.0);
-            g += j * (w * off);
-            sums[0] += w * off * off;
-            sums[1] += w;
+            self.information.ger(w, &by_pose, &by_pose, 1.0);
+            self.gradient += by_pose * (w * off);
+            self.squares += w * off * off;
+            self.weights += w;
         }
     }
-    (h, g, sums)
 }
 
 /// Refines a pose so that image points lie on their edges. Distances of at least `scale`, in
@@ -114,23 +144,23 @@ pub fn refine(
 ) -> Option<Refined> {
     let mut pose = *start;
     let mut damping = DAMPING;
-    let (mut h, mut g, mut sums) = normal_equations(camera, &pose, pulls, scale);
+    let mut sums = NormalEquations::new(camera, &pose, pulls, scale);
     for _ in 0..rounds {
+        let h = &sums.information;
         // Undetermined motions, such as the rotation of a part of revolution about its axis, stay
         // zero.
         let floor = [0, 3].map(|i| FLOOR * (h[(i, i)] + h[(i + 1, i + 1)] + h[(i + 2, i + 2)]));
-        let mut damped = h;
+        let mut damped = *h;
         for i in 0..6 {
             damped[(i, i)] += damping * h[(i, i)] + floor[i / 3];
         }
-        let step = -damped.cholesky()?.solve(&g);
+        let step = -damped.cholesky()?.solve(&sums.gradient);
         let next = moved(&pose, &step);
-        let (nh, ng, ns) = normal_equations(camera, &next, pulls, scale);
-        if ns[2] < sums[2] {
-            let gain = sums[2] - ns[2];
-            (pose, h, g, damping) = (next, nh, ng, damping * 0.25);
-            let done = gain < DAMPING * DAMPING * sums[2];
-            sums = ns;
+        let moved = NormalEquations::new(camera, &next, pulls, scale);
+        if moved.loss < sums.loss {
+            let gain = sums.loss - moved.loss;
+            let done = gain < DAMPING * DAMPING * sums.loss;
+            (pose, sums, damping) = (next, moved, damping * 0.25);
             if done {
                 break;
             }
@@ -143,8 +173,9 @@ pub fn refine(
     }
     Some(Refined {
         pose,
-        information: h,
-        squares: [sums[0], sums[1]],
+        information: sums.information,
+        squares: sums.squares,
+        weights: sums.weights,
     })
 }
 

@@ -35,15 +35,22 @@ pub fn eliminate(terms: &mut Potentials) -> u64 {
     }
 }
 
-/// By piece: the features and choices that use it.
-type Users = BTreeMap<u32, Vec<(usize, SearchChoice)>>;
+/// A choice of a feature that uses a piece.
+struct PieceUser {
+    feature: usize,
+    choice: SearchChoice,
+}
+
+/// By piece: the choices that use it.
+type Users = BTreeMap<u32, Vec<PieceUser>>;
 
 fn users(terms: &Potentials) -> Users {
     let mut users = Users::new();
     for (feature, choices) in terms.live.iter().enumerate() {
         for &choice in choices {
             for &piece in terms.pieces(feature, choice) {
-                users.entry(piece).or_default().push((feature, choice));
+                let user = PieceUser { feature, choice };
+                users.entry(piece).or_default().push(user);
             }
         }
     }
@@ -79,7 +86,8 @@ fn is_free(
     let own = terms.pieces(feature, choice);
     let pieces = terms.pieces(feature, rival).iter();
     let mut others = pieces.filter(|p| !own.contains(p)).flat_map(|p| &users[p]);
-    others.all(|&(other, c)| other == feature || !terms.live[other].contains(&c))
+    others
+        .all(|other| other.feature == feature || !terms.live[other.feature].contains(&other.choice))
 }
 
 /// The least gain of a rival over a choice, for all choices of the other features.

@@ -103,10 +103,9 @@ pub(crate) fn search(problem: &Problem, strategy: Strategy, most: u64) -> Soluti
         Strategy::Stepped => rounds(&mut state, Some(ida_star::STEP)),
     };
     // If the limit is reached before any path is complete, the greedy path is better than none.
-    let (score, assignment) = state.best.take().unwrap_or_else(|| {
-        let path = Path::promising(&terms);
-        (path.score(), path.assignment())
-    });
+    let best = state.best.take();
+    let ScoredAssignment { score, assignment } =
+        best.unwrap_or_else(|| ScoredAssignment::new(&Path::promising(&terms)));
     Solution {
         assignment,
         score,
@@ -120,7 +119,22 @@ struct State<'a> {
     terms: &'a Potentials,
     effort: SearchStats,
     most: u64,
-    best: Option<(f64, Assignment)>,
+    best: Option<ScoredAssignment>,
+}
+
+/// An assignment of all features, and its score.
+struct ScoredAssignment {
+    score: f64,
+    assignment: Assignment,
+}
+
+impl ScoredAssignment {
+    fn new(path: &Path<'_>) -> Self {
+        Self {
+            score: path.score(),
+            assignment: path.assignment(),
+        }
+    }
 }
 
 impl State<'_> {
@@ -134,12 +148,12 @@ impl State<'_> {
     /// Keeps a complete path if it is the best.
     fn keep(&mut self, path: &Path<'_>) {
         let score = path.score();
-        if self.best.as_ref().is_none_or(|b| score > b.0) {
-            self.best = Some((score, path.assignment()));
+        if self.best.as_ref().is_none_or(|b| score > b.score) {
+            self.best = Some(ScoredAssignment::new(path));
         }
     }
 
     fn incumbent(&self) -> f64 {
-        self.best.as_ref().map_or(f64::NEG_INFINITY, |b| b.0)
+        self.best.as_ref().map_or(f64::NEG_INFINITY, |b| b.score)
     }
 }

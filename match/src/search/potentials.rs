@@ -106,7 +106,7 @@ impl Potentials {
             }
         }
         let live = own.iter().map(|o: &Vec<f64>| (0..o.len()).collect());
-        let (pieces, count) = numbered(problem);
+        let NumberedPieces { pieces, count } = NumberedPieces::new(problem);
         Self {
             live: live.collect(),
             others: others(&pieces, &links),
@@ -139,18 +139,29 @@ impl Potentials {
     }
 }
 
-/// By feature and candidate: the pieces that it uses, renumbered from zero; and the number of
-/// pieces.
-fn numbered(problem: &Problem) -> (Vec<Vec<Vec<u32>>>, usize) {
-    let mut numbers = BTreeMap::new();
-    let mut number = |piece: &u32| {
-        let next = numbers.len() as u32;
-        *numbers.entry(*piece).or_insert(next)
-    };
-    let mut of = |candidate: &Candidate| candidate.pieces.iter().map(&mut number).collect();
-    let features = problem.features.iter();
-    let all = features.map(|f| f.candidates.iter().map(&mut of).collect());
-    (all.collect(), numbers.len())
+/// The pieces of a problem, renumbered from zero.
+struct NumberedPieces {
+    /// By feature and candidate: the pieces that it uses.
+    pieces: Vec<Vec<Vec<u32>>>,
+    /// The number of pieces.
+    count: usize,
+}
+
+impl NumberedPieces {
+    fn new(problem: &Problem) -> Self {
+        let mut numbers = BTreeMap::new();
+        let mut number = |piece: &u32| {
+            let next = numbers.len() as u32;
+            *numbers.entry(*piece).or_insert(next)
+        };
+        let mut of = |candidate: &Candidate| candidate.pieces.iter().map(&mut number).collect();
+        let features = problem.features.iter();
+        let pieces = features.map(|f| f.candidates.iter().map(&mut of).collect());
+        Self {
+            pieces: pieces.collect(),
+            count: numbers.len(),
+        }
+    }
 }
 
 /// See [`Potentials::others`].

@@ -10,5 +10,5 @@ pub(crate) mod axis_alignment;
 pub mod part_match;
 pub mod residuals;
 pub(crate) mod score_weights;
-pub(crate) mod scoring;
+pub mod scoring;
 pub mod shape_evidence;

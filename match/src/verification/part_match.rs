@@ -131,6 +131,13 @@ pub struct PartMatch {
     pub(crate) pulls: Vec<Vec<PointToLine>>,
 }
 
+/// A feature that is found, and its segments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TakenSegments<'a> {
+    pub source: ArcSource,
+    pub segments: &'a [u32],
+}
+
 impl PartMatch {
     /// The share of the predicted visible length in the image that edges cover.
     pub(crate) fn share(&self) -> f64 {
@@ -236,15 +243,21 @@ impl PartMatch {
     }
 
     /// The features that are found, with their segments.
-    pub(crate) fn taken(&self) -> impl Iterator<Item = (ArcSource, &[u32])> {
+    pub(crate) fn taken(&self) -> impl Iterator<Item = TakenSegments<'_>> {
         let pairs = self.pairs.iter();
-        pairs.filter_map(|p| Some((p.source, p.found.as_ref()?.segments.as_slice())))
+        pairs.filter_map(|p| {
+            Some(TakenSegments {
+                source: p.source,
+                segments: &p.found.as_ref()?.segments,
+            })
+        })
     }
 
     /// The share of its segments that another match uses, too.
     fn overlap(&self, other: &Self) -> f64 {
         let segments = |m: &Self| -> HashSet<u32> {
-            m.taken().flat_map(|(_, all)| all.iter().copied()).collect()
+            let taken = m.taken().flat_map(|taken| taken.segments);
+            taken.copied().collect()
         };
         let (ours, theirs) = (segments(self), segments(other));
         let shared = ours.intersection(&theirs).count();

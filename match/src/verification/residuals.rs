@@ -26,72 +26,110 @@ pub struct SystematicOffset {
     pub edges: f64,
 }
 
-impl SystematicOffset {
-    /// The residuals of all features of a part at a pose, and of each; none for features without
-    /// edges.
-    pub(crate) fn new(
-        camera: &Pinhole,
-        pose: &Isometry3<f64>,
-        features: &[Vec<PointToLine>],
-    ) -> (Self, Vec<Option<Self>>) {
-        let squares = features.iter().map(|pulls| squares(camera, pose, pulls));
-        let squares: Vec<Option<[f64; 3]>> = squares.collect();
-        let sum = squares.iter().flatten().copied();
-        let sum = sum.reduce(|a, b| [0, 1, 2].map(|i| a[i] + b[i]));
-        (
-            sum.map_or_else(Self::default, Self::root),
-            squares.iter().map(|s| s.map(Self::root)).collect(),
-        )
-    }
+/// The residuals of a part's features.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SystematicOffsets {
+    /// The residuals of all features.
+    pub joint: SystematicOffset,
+    /// The residuals of each; none for features without edges.
+    pub by_feature: Vec<Option<SystematicOffset>>,
+}
 
-    /// The root mean squares of weighted sums of squares and the sum of weights.
-    fn root([wholes, edges, weight]: [f64; 3]) -> Self {
+impl SystematicOffsets {
+    /// The residuals of a part's features at a pose.
+    pub fn new(camera: &Pinhole, pose: &Isometry3<f64>, features: &[Vec<PointToLine>]) -> Self {
+        let squares = features
+            .iter()
+            .map(|pulls| WeightedSquares::new(camera, pose, pulls));
+        let squares: Vec<Option<WeightedSquares>> = squares.collect();
+        let sum = squares.iter().flatten().copied();
+        let sum = sum.reduce(WeightedSquares::plus);
+        let roots = squares.iter().map(|s| s.map(WeightedSquares::root));
         Self {
-            wholes: (wholes / weight).sqrt(),
-            edges: (edges / weight).sqrt(),
+            joint: sum.map_or_else(SystematicOffset::default, WeightedSquares::root),
+            by_feature: roots.collect(),
         }
     }
 }
 
-/// The weighted sums of squares of the systematic offset and of the roughness of a feature, and the
-/// sum of weights; none where there is no weight.
-fn squares(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine]) -> Option<[f64; 3]> {
-    let seen = pulls.iter().filter_map(|pull| {
-        let (off, _) = residual(camera, pose, pull)?;
-        Some((off, pull))
-    });
-    let seen: Vec<(f64, &PointToLine)> = seen.collect();
-    let mut sums = [0.0; 3];
-    for ((off, pull), left) in seen.iter().zip(left(&seen)?) {
-        sums[0] += pull.weight * (off - left) * (off - left);
-        sums[1] += pull.weight * left * left;
-        sums[2] += pull.weight;
+/// The weighted sums of squares of a feature's residuals.
+#[derive(Clone, Copy)]
+struct WeightedSquares {
+    /// Of the systematic offset.
+    wholes: f64,
+    /// Of the roughness.
+    edges: f64,
+    /// The sum of weights.
+    weight: f64,
+}
+
+impl WeightedSquares {
+    /// The sums of a feature; none where there is no weight.
+    fn new(camera: &Pinhole, pose: &Isometry3<f64>, pulls: &[PointToLine]) -> Option<Self> {
+        let seen = pulls.iter().filter_map(|pull| {
+            let off = residual(camera, pose, pull)?.off;
+            Some(SeenPull { off, pull })
+        });
+        let seen: Vec<SeenPull<'_>> = seen.collect();
+        let mut sums = Self {
+            wholes: 0.0,
+            edges: 0.0,
+            weight: 0.0,
+        };
+        for (SeenPull { off, pull }, left) in seen.iter().zip(left(&seen)?) {
+            sums.wholes += pull.weight * (off - left) * (off - left);
+            sums.edges += pull.weight * left * left;
+            sums.weight += pull.weight;
+        }
+        (sums.weight > 0.0).then_some(sums)
     }
-    (sums[2] > 0.0).then_some(sums)
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            wholes: self.wholes + other.wholes,
+            edges: self.edges + other.edges,
+            weight: self.weight + other.weight,
+        }
+    }
+
+    /// The root mean squares.
+    fn root(self) -> SystematicOffset {
+        SystematicOffset {
+            wholes: (self.wholes / self.weight).sqrt(),
+            edges: (self.edges / self.weight).sqrt(),
+        }
+    }
+}
+
+/// A point-to-line residual at a pose.
+struct SeenPull<'a> {
+    /// The distance, in pixels.
+    off: f64,
+    pull: &'a PointToLine,
 }
 
 /// The residuals of one feature's edges after it is translated, rotated and scaled to fit them.
-fn left(seen: &[(f64, &PointToLine)]) -> Option<Vec<f64>> {
+fn left(seen: &[SeenPull<'_>]) -> Option<Vec<f64>> {
     let places = seen
         .iter()
-        .map(|(off, pull)| pull.target + pull.normal * *off);
+        .map(|seen| seen.pull.target + seen.pull.normal * seen.off);
     let places: Vec<Point2<f64>> = places.collect();
     let sum = places.iter().map(|p| p.coords).reduce(|a, b| a + b)?;
     let middle = Point2::from(sum / places.len() as f64);
     let ways = seen.iter().zip(&places);
     let ways: Vec<Vector4<f64>> = ways
-        .map(|((_, pull), place)| motion_along_normal(&pull.normal, &(place - middle)))
+        .map(|(seen, place)| motion_along_normal(&seen.pull.normal, &(place - middle)))
         .collect();
     let [moves, turns] = FREE.map(|free| 1.0 / (free * free));
     let mut normal = Matrix4::from_diagonal(&Vector4::new(moves, moves, turns, turns));
     let mut right = Vector4::zeros();
-    for ((off, _), way) in seen.iter().zip(&ways) {
+    for (seen, way) in seen.iter().zip(&ways) {
         normal += way * way.transpose();
-        right += way * *off;
+        right += way * seen.off;
     }
     let step = normal.cholesky()?.solve(&right);
     let left = seen.iter().zip(&ways);
-    Some(left.map(|((off, _), way)| off - way.dot(&step)).collect())
+    Some(left.map(|(seen, way)| seen.off - way.dot(&step)).collect())
 }
 
 /// The derivatives of a contour point's motion along its normal: by the two components of a
@@ -129,7 +167,7 @@ mod tests {
     }
 
     fn of(pulls: Vec<PointToLine>) -> SystematicOffset {
-        SystematicOffset::new(&CAMERA, &Isometry3::identity(), &[pulls]).0
+        SystematicOffsets::new(&CAMERA, &Isometry3::identity(), &[pulls]).joint
     }
 
     #[test]

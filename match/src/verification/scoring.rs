@@ -168,7 +168,7 @@ impl ScoreWeights {
 }
 
 /// The sums of the positive and of the negative scores of the relations of an assignment.
-pub fn related(problem: &Correspondence, solution: &Solution) -> [f64; 2] {
+pub(crate) fn related(problem: &Correspondence, solution: &Solution) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for relation in &problem.problem.relations {
         let [a, b] = relation.members.map(|m| solution.assignment[m]);
@@ -180,7 +180,7 @@ pub fn related(problem: &Correspondence, solution: &Solution) -> [f64; 2] {
 
 /// The information matrix of a pose, in pixels, with a weak prior: the rotation is uniform, and the
 /// position deviates by no more than the distance.
-pub fn with_prior(information: &Matrix6<f64>, distance: f64) -> Matrix6<f64> {
+pub(crate) fn with_prior(information: &Matrix6<f64>, distance: f64) -> Matrix6<f64> {
     let mut all = *information;
     for i in 0..3 {
         all[(i, i)] += 3.0 / (PI * PI);
@@ -191,7 +191,7 @@ pub fn with_prior(information: &Matrix6<f64>, distance: f64) -> Matrix6<f64> {
 
 /// The Occam factor: the logarithm of the prior volume of poses over the volume of the uncertainty.
 /// The prior has all rotations, the whole image, and all depths by their logarithm.
-pub fn fitted(
+pub(crate) fn fitted(
     part: &SoughtPart<'_>,
     camera: &Pinhole,
     [width, height]: [usize; 2],

@@ -16,7 +16,7 @@
 
 use crate::camera::Pinhole;
 use crate::part::SoughtPart;
-use crate::pose::refine::{PointToLine, residual};
+use crate::pose::refine::{PointToLine, PullResidual, residual};
 use crate::verification::part_match::PartMatch;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix2, Point2, Point3, Vector3};
 use premio_kernel::brep::topology::{EdgeId, FaceId};
@@ -66,7 +66,10 @@ impl ShapeEvidence {
     pub(crate) fn new(part: &SoughtPart<'_>, camera: &Pinhole, found: &PartMatch) -> Self {
         let pairs = found.pairs.iter().zip(&found.pulls);
         let well = pairs.filter(|(pair, _)| pair.score > 0.0);
-        let features = well.map(|(pair, pulls)| (pair.source, pulls.as_slice()));
+        let features = well.map(|(pair, pulls)| FittedFeature {
+            source: pair.source,
+            pulls,
+        });
         let visible = carriers(part, found.arcs.iter().map(|arc| arc.source));
         let there = found.pairs.iter().filter(|pair| !pair.is_missed());
         let there = carriers(part, there.map(|pair| pair.source));
@@ -82,9 +85,9 @@ impl ShapeEvidence {
         part: &SoughtPart<'_>,
         camera: &Pinhole,
         pose: &Isometry3<f64>,
-        features: impl Iterator<Item = (ArcSource, &'a [PointToLine])>,
+        features: impl Iterator<Item = FittedFeature<'a>>,
     ) -> Self {
-        let pulls = features.flat_map(|(source, pulls)| pulls.iter().map(move |p| (source, p)));
+        let pulls = features.flat_map(|f| f.pulls.iter().map(move |pull| (f.source, pull)));
         let fitted: Vec<FittedPoint> = pulls
             .filter_map(|(source, pull)| FittedPoint::new(part, camera, pose, source, pull))
             .collect();
@@ -93,10 +96,10 @@ impl ShapeEvidence {
         let rms = (squares / weights.max(f64::MIN_POSITIVE)).sqrt();
         let deviation = DEVIATION * rms.max(MIN_RATE);
         let evidence = against_its_kind(part, pose, &fitted, deviation);
-        let [determined, denied] = evidence.unwrap_or_default();
+        let evidence = evidence.unwrap_or_default();
         Self {
-            determined,
-            denied,
+            determined: evidence.determined,
+            denied: evidence.denied,
             relief: relief(part, &fitted),
             carriers: 1.0,
             undetermined: 0.0,
@@ -107,6 +110,41 @@ impl ShapeEvidence {
     pub(crate) fn ratio(&self) -> f64 {
         self.determined - self.denied
     }
+}
+
+/// A feature with the edges that it is fitted to.
+#[derive(Clone, Copy)]
+struct FittedFeature<'a> {
+    source: ArcSource,
+    pulls: &'a [PointToLine],
+}
+
+/// The logarithms that compare the part with a thing of its kind; see [`ShapeEvidence`].
+#[derive(Clone, Copy, Default)]
+struct KindEvidence {
+    determined: f64,
+    denied: f64,
+}
+
+/// A vector that belongs to a face of a feature.
+struct FaceMotion {
+    face: FaceId,
+    /// The derivative of the feature's point by an offset of the face's carrier.
+    way: Vector3<f64>,
+}
+
+/// The derivative of a residual by an offset of a face's carrier.
+#[derive(Debug)]
+struct FaceSlope {
+    face: FaceId,
+    slope: f64,
+}
+
+/// The derivative of a distance by a parameter.
+struct ParameterSlope {
+    /// The index of the parameter.
+    index: usize,
+    slope: f64,
 }
 
 /// A point of the part that is fitted to an edge.
@@ -121,7 +159,7 @@ struct FittedPoint {
     by_pose: [f64; POSE],
     /// The faces of its feature, and the derivative of the residual by an offset of the carrier of
     /// each.
-    by_face: Vec<(FaceId, f64)>,
+    by_face: Vec<FaceSlope>,
 }
 
 impl FittedPoint {
@@ -132,7 +170,7 @@ impl FittedPoint {
         source: ArcSource,
         pull: &PointToLine,
     ) -> Option<Self> {
-        let (off, by_pose) = residual(camera, pose, pull)?;
+        let PullResidual { off, by_pose } = residual(camera, pose, pull)?;
         // The derivative by a translation of the point, in the part's frame.
         let slope = pose.rotation.inverse() * by_pose.fixed_rows::<3>(3).into_owned();
         let moves = moves(part, source, &pull.point).into_iter();
@@ -142,12 +180,33 @@ impl FittedPoint {
             off,
             weight: pull.weight,
             by_pose: by_pose.into(),
-            by_face: moves.map(|(face, way)| (face, slope.dot(&way))).collect(),
+            by_face: moves
+                .map(|FaceMotion { face, way }| FaceSlope {
+                    face,
+                    slope: slope.dot(&way),
+                })
+                .collect(),
         })
     }
 
+    /// The derivatives of the residual by all parameters that it depends on.
+    fn row(&self, part: &SoughtPart<'_>, indices: &mut ParameterIndex) -> Vec<ParameterSlope> {
+        let by_pose = self.by_pose.into_iter().enumerate();
+        let mut row: Vec<ParameterSlope> = by_pose
+            .map(|(index, slope)| ParameterSlope { index, slope })
+            .collect();
+        for by_face in &self.by_face {
+            let distances = indices.distances(part, by_face.face, &self.point);
+            row.extend(distances.into_iter().map(|distance| ParameterSlope {
+                slope: by_face.slope * distance.slope,
+                ..distance
+            }));
+        }
+        row
+    }
+
     fn is_on(&self, face: FaceId) -> bool {
-        self.by_face.iter().any(|f| f.0 == face)
+        self.by_face.iter().any(|f| f.face == face)
     }
 }
 
@@ -200,11 +259,7 @@ fn faces(part: &SoughtPart<'_>, source: ArcSource) -> Vec<FaceId> {
 }
 
 /// The derivative of a feature's point by an offset of the carrier of each of its faces.
-fn moves(
-    part: &SoughtPart<'_>,
-    source: ArcSource,
-    point: &Point3<f64>,
-) -> Vec<(FaceId, Vector3<f64>)> {
+fn moves(part: &SoughtPart<'_>, source: ArcSource, point: &Point3<f64>) -> Vec<FaceMotion> {
     let brep = part.brep;
     match faces(part, source)[..] {
         [a, b] => {
@@ -215,11 +270,15 @@ fn moves(
             let Some(dual) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else {
                 return Vec::new();
             };
-            let way = |k: usize| m * dual[(0, k)] + n * dual[(1, k)];
-            vec![(a, way(0)), (b, way(1))]
+            let motion = |face: FaceId, k: usize| FaceMotion {
+                face,
+                way: m * dual[(0, k)] + n * dual[(1, k)],
+            };
+            vec![motion(a, 0), motion(b, 1)]
         }
         [face] if matches!(source, ArcSource::Limb { .. }) => {
-            vec![(face, brep.outward(face, point))]
+            let way = brep.outward(face, point);
+            vec![FaceMotion { face, way }]
         }
         _ => Vec::new(),
     }
@@ -234,14 +293,14 @@ struct ParameterIndex {
 }
 
 impl ParameterIndex {
-    /// The parameters that a point on a face depends on: index, and derivative of its distance
-    /// along the normal.
+    /// The parameters that a point on a face depends on, with the derivatives of its distance along
+    /// the normal.
     fn distances(
         &mut self,
         part: &SoughtPart<'_>,
         face: FaceId,
         point: &Point3<f64>,
-    ) -> Vec<(usize, f64)> {
+    ) -> Vec<ParameterSlope> {
         let surface = part.brep.geometry.patches[face.0 as usize].surface;
         let moves = !matches!(part.brep.geometry.surfaces[surface], Surface::Plane(_));
         let first = *self.first.entry(surface).or_insert_with(|| {
@@ -249,42 +308,34 @@ impl ParameterIndex {
             self.count += if moves { 4 } else { 1 };
             first
         });
-        let mut all = vec![(first, 1.0)];
+        let by = |index: usize, slope: f64| ParameterSlope { index, slope };
+        let mut all = vec![by(first, 1.0)];
         if moves {
             let normal = part.brep.outward(face, point);
-            all.extend((0..3).map(|k| (first + 1 + k, normal[k])));
+            all.extend((0..3).map(|k| by(first + 1 + k, normal[k])));
         }
         all
     }
 }
 
-/// The two logarithms that compare the part with a thing of its kind: `determined` and `denied`.
+/// Compares the part with a thing of its kind.
 fn against_its_kind(
     part: &SoughtPart<'_>,
     pose: &Isometry3<f64>,
     fitted: &[FittedPoint],
     deviation: f64,
-) -> Option<[f64; 2]> {
+) -> Option<KindEvidence> {
     let mut indices = ParameterIndex::default();
-    let rows: Vec<Vec<(usize, f64)>> = fitted
-        .iter()
-        .map(|d| {
-            let mut row: Vec<(usize, f64)> = d.by_pose.into_iter().enumerate().collect();
-            for &(face, by) in &d.by_face {
-                let numbers = indices.distances(part, face, &d.point);
-                row.extend(numbers.into_iter().map(|(i, factor)| (i, by * factor)));
-            }
-            row
-        })
-        .collect();
+    let rows = fitted.iter().map(|d| d.row(part, &mut indices));
+    let rows: Vec<Vec<ParameterSlope>> = rows.collect();
     let size = POSE + indices.count;
     let (mut information, mut slope) = (DMatrix::zeros(size, size), DVector::zeros(size));
     for (d, row) in fitted.iter().zip(&rows) {
         let weight = d.weight / (deviation * deviation);
-        for &(i, a) in row {
-            slope[i] += weight * a * d.off;
-            for &(j, b) in row {
-                information[(i, j)] += weight * a * b;
+        for a in row {
+            slope[a.index] += weight * a.slope * d.off;
+            for b in row {
+                information[(a.index, b.index)] += weight * a.slope * b.slope;
             }
         }
     }
@@ -298,30 +349,42 @@ fn against_its_kind(
         });
         laplace(&information, &slope, &prior)
     });
-    let ([known, fits], [varied, fits_better]) = (of_part?, of_thing?);
-    Some([varied - known, fits_better - fits])
+    let (part, thing) = (of_part?, of_thing?);
+    Some(KindEvidence {
+        determined: thing.information - part.information,
+        denied: thing.fit - part.fit,
+    })
 }
 
-/// Laplace's method, as logarithms: the information gain over the prior, and the gain of the best
-/// fit over the given parameters.
+/// The gains by Laplace's method, as logarithms.
+struct LaplaceGain {
+    /// The gain of information over the prior.
+    information: f64,
+    /// The gain of the best fit over the given parameters.
+    fit: f64,
+}
+
+/// Laplace's method at the given parameters.
 fn laplace(
     information: &DMatrix<f64>,
     slope: &DVector<f64>,
     prior: &DVector<f64>,
-) -> Option<[f64; 2]> {
+) -> Option<LaplaceGain> {
     let mut all = information.clone();
     all.set_diagonal(&(all.diagonal() + prior));
     let all = all.cholesky()?;
     let determinant: f64 = 2.0 * all.l_dirty().diagonal().map(f64::ln).sum();
-    let narrower = 0.5 * (determinant - prior.map(f64::ln).sum());
-    Some([narrower, 0.5 * slope.dot(&all.solve(slope))])
+    Some(LaplaceGain {
+        information: 0.5 * (determinant - prior.map(f64::ln).sum()),
+        fit: 0.5 * slope.dot(&all.solve(slope)),
+    })
 }
 
 /// See [`ShapeEvidence::relief`].
 fn relief(part: &SoughtPart<'_>, fitted: &[FittedPoint]) -> f64 {
     let faces: BTreeSet<FaceId> = fitted
         .iter()
-        .flat_map(|d| d.by_face.iter().map(|f| f.0))
+        .flat_map(|d| d.by_face.iter().map(|f| f.face))
         .collect();
     let planes = faces
         .into_iter()

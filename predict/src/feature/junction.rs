@@ -81,17 +81,33 @@ pub(crate) struct Nodes {
     pub of_arcs: Vec<Vec<u32>>,
 }
 
+/// A start, a stop or an end of an arc.
+struct ArcStop {
+    point: [f64; 2],
+    /// The index of the arc.
+    arc: usize,
+    /// The place among the arc's nodes.
+    slot: usize,
+}
+
 impl Nodes {
     /// The nodes of arcs.
     pub fn new(arcs: &[PredictedArc]) -> Self {
-        let mut ends: Vec<([f64; 2], usize, usize)> = Vec::new();
+        let mut ends: Vec<ArcStop> = Vec::new();
         for (i, arc) in arcs.iter().enumerate() {
             let last = arc.line.points.len() - 1;
             for (slot, &k) in [0].iter().chain(&arc.stops).chain([&last]).enumerate() {
-                ends.push((arc.line.points[k], i, slot));
+                ends.push(ArcStop {
+                    point: arc.line.points[k],
+                    arc: i,
+                    slot,
+                });
             }
         }
-        ends.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]).then(a.0[1].total_cmp(&b.0[1])));
+        ends.sort_by(|a, b| {
+            let [p, q] = [a.point, b.point];
+            p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+        });
         let mut nodes = Self {
             places: Vec::new(),
             of_arcs: arcs
@@ -100,7 +116,12 @@ impl Nodes {
                 .collect(),
         };
         let mut first = 0;
-        for (p, arc, slot) in ends {
+        for ArcStop {
+            point: p,
+            arc,
+            slot,
+        } in ends
+        {
             while nodes.places.get(first).is_some_and(|q| q[0] < p[0] - ONE) {
                 first += 1;
             }

@@ -44,7 +44,10 @@ pub fn expose(shading: &Shading<'_>, regions: &Regions, domain: &PixelMask, imag
             while x < span.end {
                 // Up to here each scanline stays in one region.
                 match row.unambiguous(x) {
-                    (until, Some(region)) if until > x => {
+                    RegionRun {
+                        end: until,
+                        region: Some(region),
+                    } if until > x => {
                         let run = x..until.min(span.end);
                         x = run.end;
                         light.shade(region, run, y, levels);
@@ -119,47 +122,78 @@ impl<'s, 'p> Light<'s, 'p> {
 /// The levels of a run of pixels of one region: interpolated in pieces between the ends and the
 /// middle where it is linear, and halved where not.
 fn shade(run: Range<u32>, row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
-    let mut from = (run.start, level(run.start));
-    row[from.0 as usize] = from.1 as f32;
-    while from.0 + 1 < run.end {
-        let x = (from.0 + KNOTS).min(run.end - 1);
-        let to = (x, level(x));
-        between(from, to, row, level);
-        row[to.0 as usize] = to.1 as f32;
+    let mut from = PixelLevel::new(run.start, level);
+    row[from.x as usize] = from.level as f32;
+    while from.x + 1 < run.end {
+        let x = (from.x + KNOTS).min(run.end - 1);
+        let to = PixelLevel::new(x, level);
+        between([from, to], row, level);
+        row[to.x as usize] = to.level as f32;
         from = to;
     }
 }
 
+/// The level of a pixel of a row.
+#[derive(Clone, Copy)]
+struct PixelLevel {
+    x: u32,
+    level: f64,
+}
+
+impl PixelLevel {
+    fn new(x: u32, level: &mut impl FnMut(u32) -> f64) -> Self {
+        Self { x, level: level(x) }
+    }
+
+    /// The level at a pixel, interpolated between this one and another.
+    fn interpolated(&self, other: &Self, x: u32) -> f64 {
+        let part = f64::from(x - self.x) / f64::from(other.x - self.x);
+        self.level + (other.level - self.level) * part
+    }
+}
+
 /// The levels between two pixels.
-fn between(from: (u32, f64), to: (u32, f64), row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
-    let x = (from.0 + to.0) / 2;
-    if x == from.0 {
+fn between([from, to]: [PixelLevel; 2], row: &mut [f32], level: &mut impl FnMut(u32) -> f64) {
+    let x = (from.x + to.x) / 2;
+    if x == from.x {
         return;
     }
-    let middle = (x, level(x));
-    row[x as usize] = middle.1 as f32;
-    let part = |a: (u32, f64), b: (u32, f64), x: u32| {
-        a.1 + (b.1 - a.1) * (f64::from(x - a.0) / f64::from(b.0 - a.0))
-    };
+    let middle = PixelLevel::new(x, level);
+    row[x as usize] = middle.level as f32;
     // A parabola deviates from its half chords by a quarter of the deviation of its middle from its
     // chord.
-    if (part(from, to, x) - middle.1).abs() > 4.0 * STRAIGHT {
-        between(from, middle, row, level);
-        between(middle, to, row, level);
+    if (from.interpolated(&to, x) - middle.level).abs() > 4.0 * STRAIGHT {
+        between([from, middle], row, level);
+        between([middle, to], row, level);
         return;
     }
-    for (a, b) in [(from, middle), (middle, to)] {
-        for x in a.0 + 1..b.0 {
-            row[x as usize] = part(a, b, x) as f32;
+    for [a, b] in [[from, middle], [middle, to]] {
+        for x in a.x + 1..b.x {
+            row[x as usize] = a.interpolated(&b, x) as f32;
         }
     }
+}
+
+/// The end of a gap of a scanline, and its region.
+#[derive(Clone, Copy)]
+struct RowGap {
+    end: f64,
+    region: u32,
+}
+
+/// A run of pixels in which every scanline stays in its gap.
+struct RegionRun {
+    /// The last pixel.
+    end: u32,
+    /// The region of all gaps, if they have the same.
+    region: Option<u32>,
 }
 
 /// The gaps of the scanlines through a row of pixels.
 #[derive(Default)]
 struct Row {
-    /// By scanline: its gaps, each with its end and its region.
-    gaps: [Vec<(f64, u32)>; LINES],
+    /// By scanline: its gaps.
+    gaps: [Vec<RowGap>; LINES],
     /// By scanline: the gap in which the last pixel began.
     at: [usize; LINES],
 }
@@ -168,11 +202,10 @@ impl Row {
     fn fill(&mut self, regions: &Regions, y: usize) {
         for (k, gaps) in self.gaps.iter_mut().enumerate() {
             gaps.clear();
-            gaps.extend(
-                regions
-                    .gaps(y * LINES + k)
-                    .map(|([_, end], region)| (end, region)),
-            );
+            gaps.extend(regions.gaps(y * LINES + k).map(|gap| RowGap {
+                end: gap.range[1],
+                region: gap.region,
+            }));
         }
         self.at = [0; LINES];
     }
@@ -181,25 +214,26 @@ impl Row {
     fn seek(&mut self, x: u32) {
         let left = f64::from(x) - 0.5;
         for (gaps, at) in self.gaps.iter().zip(&mut self.at) {
-            while *at + 1 < gaps.len() && gaps[*at].0 <= left {
+            while *at + 1 < gaps.len() && gaps[*at].end <= left {
                 *at += 1;
             }
         }
     }
 
-    /// The last pixel, from a given one on, up to which every scanline stays in its gap; and the
-    /// one region of all gaps.
-    fn unambiguous(&mut self, x: u32) -> (u32, Option<u32>) {
+    /// The run of pixels, from a given one on, in which every scanline stays in its gap.
+    fn unambiguous(&mut self, x: u32) -> RegionRun {
         self.seek(x);
-        let (first, region) = self.gaps[0][self.at[0]];
-        let mut end = first;
+        let RowGap { mut end, region } = self.gaps[0][self.at[0]];
         let mut same = Some(region);
         for (gaps, &at) in self.gaps.iter().zip(&self.at).skip(1) {
-            end = end.min(gaps[at].0);
-            same = same.filter(|region| *region == gaps[at].1);
+            end = end.min(gaps[at].end);
+            same = same.filter(|region| *region == gaps[at].region);
         }
-        // The last pixel that ends before the gap does.
-        (((end + 0.5).floor().max(0.0) as u32).max(x), same)
+        RegionRun {
+            // The last pixel that ends before the gap does.
+            end: ((end + 0.5).floor().max(0.0) as u32).max(x),
+            region: same,
+        }
     }
 
     /// The shares of regions in a pixel; `is_known` states whether the content of a region is
@@ -210,7 +244,7 @@ impl Row {
         for (k, (gaps, &at)) in self.gaps.iter().zip(&self.at).enumerate() {
             let row = line_y(y * LINES + k);
             let mut from = left;
-            for &(end, region) in &gaps[at..] {
+            for &RowGap { end, region } in &gaps[at..] {
                 let to = end.min(right);
                 if to > from {
                     let area = (to - from) * SHARE;

@@ -12,4 +12,4 @@ pub(crate) mod shadow;
 
 pub use arc::{ArcSource, PredictedArc};
 pub use lit_scene::LitScene;
-pub use regions::{Region, RegionSample, Regions};
+pub use regions::{Region, RegionPoint, RegionSample, Regions};

@@ -85,17 +85,20 @@ fn torus(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool, hint: f64)
         let across = rho - s.major;
         let tube = across.hypot(p.z);
         let slope = (across * (p.x * w.x + p.y * w.y) / rho + p.z * w.z) / tube;
-        (sign * (tube - s.minor), sign * slope)
+        DistanceAlong {
+            distance: sign * (tube - s.minor),
+            slope: sign * slope,
+        }
     };
     let fine = s.minor * f64::EPSILON.sqrt();
     let mut t = hint;
     for _ in 0..STEPS {
-        let (f, slope) = value(t);
+        let DistanceAlong { distance, slope } = value(t);
         // From outside to inside along the line.
-        if f.abs() <= fine && slope <= 0.0 {
+        if distance.abs() <= fine && slope <= 0.0 {
             return Some(t);
         }
-        let step = f / slope;
+        let step = distance / slope;
         if step.is_nan() || step.abs() > s.minor {
             break;
         }
@@ -104,10 +107,17 @@ fn torus(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool, hint: f64)
     searched(&value, q, w, s, hint)
 }
 
+/// A signed distance from a surface at a point of a line.
+struct DistanceAlong {
+    distance: f64,
+    /// Its derivative along the line.
+    slope: f64,
+}
+
 /// The crossing from outside to inside nearest to the hint, or otherwise the point where the line
 /// is nearest.
 fn searched(
-    value: &impl Fn(f64) -> (f64, f64),
+    value: &impl Fn(f64) -> DistanceAlong,
     q: &Vector3<f64>,
     w: &Vector3<f64>,
     s: &Torus,
@@ -125,14 +135,14 @@ fn searched(
     let mut least = (f64::INFINITY, nearest);
     for k in 0..CUTS {
         let [mut lo, mut hi] = [at(k), at(k + 1)];
-        let [f, g] = [value(lo).0, value(hi).0];
+        let [f, g] = [value(lo).distance, value(hi).distance];
         if f.abs() < least.0 {
             least = (f.abs(), lo);
         }
         if f > 0.0 && g <= 0.0 {
             for _ in 0..48 {
                 let middle = 0.5 * (lo + hi);
-                match value(middle).0 > 0.0 {
+                match value(middle).distance > 0.0 {
                     true => lo = middle,
                     false => hi = middle,
                 }

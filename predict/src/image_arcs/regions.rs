@@ -47,8 +47,45 @@ pub struct Region {
     pub area: f64,
     /// The bounds of its pixels: columns and rows.
     pub bounds: [[f64; 2]; 2],
-    /// Sample points, each with the length of the gap between arcs whose middle it is.
-    pub points: Vec<([f64; 2], f64)>,
+    /// Sample points.
+    pub points: Vec<RegionPoint>,
+}
+
+/// A sample point of a region, between two arcs on a scanline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RegionPoint {
+    /// The point of the image.
+    pub at: [f64; 2],
+    /// The length of the gap between the arcs.
+    pub gap: f64,
+}
+
+/// A gap of a scanline, between two crossings of arcs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanlineGap {
+    /// Where it begins and ends, in columns.
+    pub range: [f64; 2],
+    /// Its region.
+    pub region: u32,
+}
+
+/// The widest gap of a region on some scanlines.
+#[derive(Clone, Copy)]
+struct WidestGap {
+    range: [f64; 2],
+    /// The row of the scanline.
+    y: f64,
+}
+
+impl WidestGap {
+    const NONE: Self = Self {
+        range: [0.0; 2],
+        y: 0.0,
+    };
+
+    fn length(&self) -> f64 {
+        self.range[1] - self.range[0]
+    }
 }
 
 impl Region {
@@ -162,15 +199,17 @@ impl Regions {
         self.between(k.checked_sub(1).map(|k| &on[k]), on.get(k))
     }
 
-    /// The gaps of a scanline: the region between each two crossings, starting with the outside on
-    /// the left.
-    pub(crate) fn gaps(&self, line: usize) -> impl Iterator<Item = ([f64; 2], u32)> + '_ {
+    /// The gaps of a scanline between each two crossings, starting with the outside on the left.
+    pub(crate) fn gaps(&self, line: usize) -> impl Iterator<Item = ScanlineGap> + '_ {
         let on = self.scanlines.on(line);
         (0..=on.len()).map(move |k| {
             let (from, to) = (k.checked_sub(1).map(|k| &on[k]), on.get(k));
             let start = from.map_or(f64::NEG_INFINITY, |c| c.x);
             let end = to.map_or(f64::INFINITY, |c| c.x);
-            ([start, end], self.between(from, to))
+            ScanlineGap {
+                range: [start, end],
+                region: self.between(from, to),
+            }
         })
     }
 
@@ -195,10 +234,10 @@ impl Regions {
         for line in 0..self.scanlines.lines() {
             let y = line_y(line);
             let gaps: Vec<_> = self.gaps(line).collect();
-            for (gap, region) in gaps {
-                let (from, to) = inside(gap);
+            for gap in gaps {
+                let (from, to) = inside(gap.range);
                 if to > from {
-                    let region = &mut self.all[region as usize];
+                    let region = &mut self.all[gap.region as usize];
                     region.area += (to - from) / LINES as f64;
                     let [least, most] = &mut region.bounds;
                     *least = [least[0].min(from), least[1].min(y)];
@@ -206,23 +245,28 @@ impl Regions {
                 }
             }
         }
-        let mut best = vec![[(0.0, 0.0, 0.0); BANDS]; self.all.len()];
+        let mut best = vec![[WidestGap::NONE; BANDS]; self.all.len()];
         for line in 0..self.scanlines.lines() {
             let y = line_y(line);
-            for (gap, region) in self.gaps(line) {
-                let (from, to) = inside(gap);
-                let [least, most] = self.all[region as usize].bounds;
+            for gap in self.gaps(line) {
+                let (from, to) = inside(gap.range);
+                let [least, most] = self.all[gap.region as usize].bounds;
                 let part = (y - least[1]) / (most[1] - least[1]).max(f64::MIN_POSITIVE);
-                let resolution = ((part * BANDS as f64) as usize).min(BANDS - 1);
-                let known = &mut best[region as usize][resolution];
-                if to - from > known.1 - known.0 {
-                    *known = (from, to, y);
+                let strip = ((part * BANDS as f64) as usize).min(BANDS - 1);
+                let known = &mut best[gap.region as usize][strip];
+                if to - from > known.length() {
+                    let range = [from, to];
+                    *known = WidestGap { range, y };
                 }
             }
         }
         for (region, best) in self.all.iter_mut().zip(best) {
-            for (from, to, y) in best.into_iter().filter(|(from, to, _)| to - from > APART) {
-                let at = |part: f64| ([from + (to - from) * part, y], to - from);
+            for gap in best.into_iter().filter(|gap| gap.length() > APART) {
+                let [from, to] = gap.range;
+                let at = |part: f64| RegionPoint {
+                    at: [from + (to - from) * part, gap.y],
+                    gap: to - from,
+                };
                 region.points.extend(ACROSS.map(at));
             }
         }
@@ -337,7 +381,7 @@ fn agrees(stage: &LitScene<'_>, content: &RegionSample, at: [f64; 2]) -> bool {
 /// where they differ.
 fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<RegionSample> {
     let points = &region.points;
-    let first = stage.seen(points.first()?.0);
+    let first = stage.seen(points.first()?.at);
     // A flat region is uniform, and in a small one few pixels can be wrong.
     let flat = |hit: &FirstHit| {
         let surface = stage.subject.brep.surface(hit.face);
@@ -352,7 +396,7 @@ fn seen(stage: &LitScene<'_>, region: &Region, votes: &[[u32; 2]]) -> Option<Reg
         .iter()
         .step_by(step)
         .skip(1)
-        .map(|&(at, _)| stage.seen(at));
+        .map(|point| stage.seen(point.at));
     let Some(FirstHit { face, point }) = first else {
         let same = hits.all(|hit| hit.is_none());
         return same.then_some(RegionSample {

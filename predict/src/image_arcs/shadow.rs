@@ -82,8 +82,8 @@ pub fn add_shadows(stage: &LitScene<'_>, window: &ImageWindow, arcs: &mut Vec<Pr
                 }
             }
             for limb in &seen {
-                if let Some((source, line)) = terminator(stage, light, view, limb, window) {
-                    add(source, None, &line);
+                if let Some(found) = terminator(stage, light, view, limb, window) {
+                    add(found.source, None, &found.line);
                 }
             }
         }
@@ -127,6 +127,12 @@ fn seen_by_light(
     view.arcs(ordinals, light_unit(stage, view) * LIGHT_FINE, &everywhere)
 }
 
+/// The boundary between the parts of a face that are turned towards a light and away from it.
+struct Terminator {
+    source: ArcSource,
+    line: Polyline,
+}
+
 /// The terminator of a face, if the light's view has a limb there, as the camera sees it.
 fn terminator(
     stage: &LitScene<'_>,
@@ -134,7 +140,7 @@ fn terminator(
     view: &Sightings<'_>,
     limb: &PredictedArc,
     window: &ImageWindow,
-) -> Option<(ArcSource, Polyline)> {
+) -> Option<Terminator> {
     let ArcSource::Limb { face, ordinal } = limb.source else {
         return None;
     };
@@ -148,15 +154,12 @@ fn terminator(
     let straight = matches!(contour.space_curve, Curve::Line(_));
     let mut line = flatten(curve, range, straight, tolerance(window))?;
     draw_out(&mut line);
-    let light = light as u32;
-    Some((
-        ArcSource::Terminator {
-            light,
-            face,
-            ordinal,
-        },
-        line,
-    ))
+    let source = ArcSource::Terminator {
+        light: light as u32,
+        face,
+        ordinal,
+    };
+    Some(Terminator { source, line })
 }
 
 /// The pieces of a light's view that cast a shadow on the part.

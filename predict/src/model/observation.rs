@@ -305,6 +305,13 @@ fn chain_is_kept(arcs: &[u32], junctions: &[PredictedJunction]) -> bool {
     })
 }
 
+/// A found end of an arc.
+struct FoundEnd {
+    /// The index of the arc.
+    arc: u32,
+    point: [f64; 2],
+}
+
 /// The number of near pairs of found ends of arcs without a junction, and the number of all such
 /// pairs.
 fn chance(
@@ -314,13 +321,16 @@ fn chance(
     margin: f64,
 ) -> [u32; 2] {
     let near = 2.0 * (margin + crate::feature::junction::NEAR);
-    let mut ends: Vec<(u32, [f64; 2])> = Vec::new();
+    let mut ends: Vec<FoundEnd> = Vec::new();
     for (i, found) in outcome.evidence.iter().enumerate() {
         let outer = found.fragments.first().zip(found.fragments.last());
         if let Some((first, last)) = outer.filter(|_| !draft.arcs[i].smooth) {
             let line = &draft.arcs[i].line;
             for along in [first.along[0], last.along[1]] {
-                ends.push((i as u32, line.point_at(along)));
+                ends.push(FoundEnd {
+                    arc: i as u32,
+                    point: line.point_at(along),
+                });
             }
         }
     }
@@ -329,13 +339,14 @@ fn chance(
         junctions.iter().any(|j| has(j, a) && has(j, b))
     };
     let mut counts = [0; 2];
-    for (k, (a, p)) in ends.iter().enumerate() {
-        for (b, q) in &ends[k + 1..] {
-            if a == b {
+    for (k, a) in ends.iter().enumerate() {
+        for b in &ends[k + 1..] {
+            if a.arc == b.arc {
                 continue;
             }
+            let [p, q] = [a.point, b.point];
             let is_near = (p[0] - q[0]).hypot(p[1] - q[1]) <= near;
-            if is_near && meet(*a, *b) {
+            if is_near && meet(a.arc, b.arc) {
                 continue;
             }
             counts[0] += u32::from(is_near);

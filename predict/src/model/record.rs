@@ -1,7 +1,7 @@
 //! The format of a model: one record per line (`premio.model/1`).
 
 use super::observation::{ATTRIBUTES, RelationKind};
-use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, Summary};
+use super::summary::{AspectSums, FLOOR, FRAGMENTS, FeatureSums, RelationKey, Summary};
 use crate::image_arcs::ArcSource;
 use crate::setup::setups::Setups;
 use crate::statistics::{CredibleInterval, DependenceTree, Moments, Proportion};
@@ -352,7 +352,7 @@ fn tuples(summary: &Summary, rank: &BTreeMap<ArcSource, usize>) -> Vec<RelationR
     let mut all: Vec<RelationRecord> = summary
         .tuples
         .iter()
-        .map(|((kind, members), sums)| RelationRecord {
+        .map(|(RelationKey { kind, members }, sums)| RelationRecord {
             rank: 0,
             kind: *kind,
             members: members.iter().map(|m| rank[m]).collect(),

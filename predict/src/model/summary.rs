@@ -98,6 +98,15 @@ pub(crate) struct AspectSums {
     learnt: BTreeMap<ArcSource, Box<SightSums>>,
 }
 
+/// A relation of features.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct RelationKey {
+    /// Its kind.
+    pub kind: RelationKind,
+    /// Its features.
+    pub members: Vec<ArcSource>,
+}
+
 /// The counts of a relation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TupleSums {
@@ -122,8 +131,8 @@ pub struct Summary {
     pub(crate) aspects: BTreeMap<Vec<ArcSource>, AspectSums>,
     /// The number of setups of aspects beyond the separate ones.
     pub(crate) other_aspects: u64,
-    /// By relation: its kind and its features.
-    pub(crate) tuples: BTreeMap<(RelationKind, Vec<ArcSource>), TupleSums>,
+    /// By relation.
+    pub(crate) tuples: BTreeMap<RelationKey, TupleSums>,
     /// The number of times that relations beyond the separate ones are visible.
     pub(crate) other_tuples: u64,
     /// The number of pairs of ends that are near by chance, and the number of all such pairs.
@@ -173,7 +182,10 @@ impl Summary {
 
     fn add_tuple(&mut self, observation: &Observation, tuple: &RelationObservation) {
         let source = |m: &u32| observation.sights[*m as usize].source;
-        let key = (tuple.kind, tuple.members.iter().map(source).collect());
+        let key = RelationKey {
+            kind: tuple.kind,
+            members: tuple.members.iter().map(source).collect(),
+        };
         if self.tuples.len() >= MOST_TUPLES && !self.tuples.contains_key(&key) {
             self.other_tuples += 1;
             return;

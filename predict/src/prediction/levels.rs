@@ -6,7 +6,7 @@ use crate::feature::detected_arc::DetectionState;
 use crate::feature::group::{ArcChain, BoundaryGroup, boundaries, chains, triplets};
 use crate::feature::junction::{Nodes, PredictedJunction, junctions};
 use crate::feature::reason::Reason;
-use crate::image_arcs::{ArcSource, PredictedArc};
+use crate::image_arcs::{ArcSource, PredictedArc, RegionPoint};
 use crate::setup::Setup;
 use premio_detect::SegmentShape;
 use schemars::JsonSchema;
@@ -278,7 +278,7 @@ fn object_level(
 fn region_levels(draft: &PredictedImage<'_>) -> Vec<RegionLevel> {
     let levels = draft.regions.all.iter().enumerate().map(|(i, region)| {
         let (mut sum, mut weight) = (0.0, 0.0);
-        for &(at, gap) in &region.points {
+        for &RegionPoint { at, gap } in &region.points {
             let seen = region.seen.unwrap_or_else(|| draft.shading.cast(at));
             let mut hint = draft.shading.distance(&seen.point);
             sum += gap * draft.shading.level(at, &seen, &mut hint);

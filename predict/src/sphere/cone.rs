@@ -77,22 +77,22 @@ impl Cap {
     pub(super) fn at(&self, below: f64, around: f64) -> Vector3<f64> {
         let radius = (below * (2.0 - below)).max(0.0).sqrt();
         let (sin, cos) = around.sin_cos();
-        let (u, v) = across(&self.axis);
+        let [u, v] = across(&self.axis);
         (self.axis * (1.0 - below) + u * (radius * cos) + v * (radius * sin)).normalize()
     }
 }
 
 /// Two unit vectors perpendicular to a unit vector and to one another, right-handed with it; of z,
 /// x and y.
-fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     // Duff et al., Journal of Computer Graphics Techniques 6, 2017.
     let sign = 1.0_f64.copysign(axis.z);
     let a = -1.0 / (sign + axis.z);
     let b = axis.x * axis.y * a;
-    (
+    [
         Vector3::new(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
         Vector3::new(b, sign + axis.y * axis.y * a, -axis.y),
-    )
+    ]
 }
 
 /// The caps of the cones, the largest first; the whole sphere if there is no cone.

@@ -72,14 +72,17 @@ impl Proportion {
     }
 
     /// The posterior's parameters, a = s + ½ and b = n − s + ½.
-    fn parameters(&self) -> (f64, f64) {
+    fn parameters(&self) -> BetaParameters {
         let failures = self.trials.saturating_sub(self.successes);
-        (self.successes as f64 + 0.5, failures as f64 + 0.5)
+        BetaParameters {
+            a: self.successes as f64 + 0.5,
+            b: failures as f64 + 0.5,
+        }
     }
 
     /// The posterior's mean, (s + ½)/(n + 1).
     pub fn mean(&self) -> f64 {
-        let (a, b) = self.parameters();
+        let BetaParameters { a, b } = self.parameters();
         a / (a + b)
     }
 
@@ -94,12 +97,18 @@ impl Proportion {
             };
         }
         let tail = 0.5 * (1.0 - level.max(0.0));
-        let (a, b) = self.parameters();
+        let BetaParameters { a, b } = self.parameters();
         CredibleInterval {
             low: proportion(|x, y| below(a, b, x, y) < tail),
             high: proportion(|x, y| below(b, a, y, x) > tail),
         }
     }
+}
+
+/// The parameters of a beta distribution.
+struct BetaParameters {
+    a: f64,
+    b: f64,
 }
 
 impl TryFrom<Written> for Proportion {

@@ -61,7 +61,7 @@ fn root<const K: usize>(pairs: &Pairs<K>) -> Option<usize> {
 impl<const K: usize> DependenceTree<K> {
     /// The tree of counts.
     pub fn new(pairs: &Pairs<K>) -> Self {
-        let (parents, order) = spanning(pairs);
+        let SpanningTree { parents, order } = spanning(pairs);
         let node = |(feature, &parent): (usize, &Option<usize>)| {
             let marginal = smoothed(pairs.counts(feature));
             DependenceNode {
@@ -88,8 +88,16 @@ impl<const K: usize> DependenceTree<K> {
     }
 }
 
-/// The parents in the tree, and the order in which features were joined to it (Prim, 1957).
-fn spanning<const K: usize>(pairs: &Pairs<K>) -> (Vec<Option<usize>>, Vec<usize>) {
+/// A tree of all features.
+struct SpanningTree {
+    /// By feature: its parent.
+    parents: Vec<Option<usize>>,
+    /// The features in the order in which they were joined to the tree.
+    order: Vec<usize>,
+}
+
+/// The tree of the most information (Prim, 1957).
+fn spanning<const K: usize>(pairs: &Pairs<K>) -> SpanningTree {
     let features = pairs.features();
     let mut parents = vec![None; features];
     let mut order = Vec::with_capacity(features);
@@ -111,7 +119,7 @@ fn spanning<const K: usize>(pairs: &Pairs<K>) -> (Vec<Option<usize>>, Vec<usize>
         }
         next = outside.iter().rev().copied().max_by_key(|&i| bound[i].0);
     }
-    (parents, order)
+    SpanningTree { parents, order }
 }
 
 #[cfg(test)]

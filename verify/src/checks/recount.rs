@@ -1,12 +1,12 @@
 //! Recounts the quantitative invisibility of pieces by ray casting on the tree.
 
 use super::Finding;
-use nalgebra::{Point3, Vector3};
-use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence};
+use nalgebra::Point3;
+use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence, SightSegment};
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::camera::projection::{Projection, ViewRay};
-use premio_visibility::contours::{ContourKind, ImageCurve};
+use premio_visibility::contours::{Contour, ContourKind, ContourPiece, ImageCurve};
 use std::fmt;
 
 /// The fractions of a piece's range at which samples are taken. The middle is avoided: there a
@@ -93,83 +93,170 @@ impl Recount {
 
     /// Recounts every piece.
     fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
-        let projection = Projection::new(&seen.camera, clearance.size);
-        let sight = |p: &_| line_of_sight(&projection, p);
-        let closer = closer(clearance);
-        // All lines of sight must give the same count, however close they are.
-        let holds = |p: &_, counted: u32| {
-            closer
-                .iter()
-                .all(|c| match material.invisibility(p, sight, c) {
-                    SightEvidence::Count(again) | SightEvidence::Fold(again) => again == counted,
-                    SightEvidence::Thin => true,
-                    SightEvidence::Mixed | SightEvidence::Close => false,
-                })
+        let counter = Counter {
+            material,
+            projection: Projection::new(&seen.camera, clearance.size),
+            clearance,
+            closer: closer(clearance),
         };
         let mut recount = Self::default();
         for contour in &seen.contours {
-            let end_on = matches!(contour.image_curve, ImageCurve::Point { .. });
-            for (index, piece) in contour.pieces.iter().enumerate() {
-                recount.pieces += 1;
-                let [lo, hi] = piece.range;
-                let ends = [lo, hi].map(|t| contour.space_curve.point(t));
-                let open = piece.start.is_some() || piece.end.is_some();
-                let mut wrong = None;
-                for part in SAMPLES {
-                    let place = contour.space_curve.point(lo + part * (hi - lo));
-                    // Where a piece ends in the image, another contour is close.
-                    let (towards, _) = sight(&place);
-                    let lateral = ends.map(|e| (e - place).cross(&towards).norm());
-                    let short = lateral.map(|lateral| lateral < NEAR * clearance.lateral);
-                    let unclear = end_on || (open && short.contains(&true));
-                    let counted = material.invisibility(&place, sight, clearance);
-                    let (counted, folds) = match counted {
-                        SightEvidence::Count(counted) if !unclear => (counted, false),
-                        // A limb is on its own fold.
-                        SightEvidence::Fold(counted) if !unclear => {
-                            (counted, contour.kind != ContourKind::Limb)
-                        }
-                        _ => {
-                            recount.ambiguous += 1;
-                            continue;
-                        }
-                    };
-                    match counted {
-                        // Seen end-on, it has no two sides. All neighbouring rays may miss
-                        // something that covers a narrow angle around it.
-                        _ if end_on && counted != piece.quantitative_invisibility => {
-                            recount.ambiguous += 1
-                        }
-                        _ if counted == piece.quantitative_invisibility
-                            && piece.visible == (counted == 0) =>
-                        {
-                            recount.agreed += 1;
-                        }
-                        _ if folds
-                            && piece.quantitative_invisibility == counted + 1
-                            && !piece.visible =>
-                        {
-                            recount.ambiguous += 1;
-                        }
-                        // The count depends on the distance of the rays.
-                        _ if !holds(&place, counted) => recount.ambiguous += 1,
-                        _ => {
-                            wrong = Some(WrongPiece {
-                                range: piece.range,
-                                contour: contour.id,
-                                kind: contour.kind,
-                                piece: index,
-                                place: place.into(),
-                                given: piece.quantitative_invisibility,
-                                counted,
-                            });
-                        }
-                    }
-                }
-                recount.wrong.extend(wrong);
+            for index in 0..contour.pieces.len() {
+                recount.add(&counter, &SampledPiece::new(contour, index));
             }
         }
         recount
+    }
+
+    /// Recounts the samples of a piece. Of several that disagree the last one is reported.
+    fn add(&mut self, counter: &Counter<'_>, piece: &SampledPiece<'_>) {
+        self.pieces += 1;
+        let mut wrong = None;
+        for part in SAMPLES {
+            match counter.verdict(piece, &piece.at(part)) {
+                SampleVerdict::Agrees => self.agreed += 1,
+                SampleVerdict::Ambiguous => self.ambiguous += 1,
+                SampleVerdict::Wrong(found) => wrong = Some(found),
+            }
+        }
+        self.wrong.extend(wrong);
+    }
+}
+
+/// A piece of a contour, of which samples are counted.
+struct SampledPiece<'a> {
+    contour: &'a Contour,
+    /// The index of the piece in the contour.
+    index: usize,
+    piece: &'a ContourPiece,
+    /// Whether the contour is seen end-on, as a point.
+    end_on: bool,
+    /// The points at both ends.
+    ends: [Point3<f64>; 2],
+}
+
+impl<'a> SampledPiece<'a> {
+    fn new(contour: &'a Contour, index: usize) -> Self {
+        let piece = &contour.pieces[index];
+        Self {
+            contour,
+            index,
+            piece,
+            end_on: matches!(contour.image_curve, ImageCurve::Point { .. }),
+            ends: piece.range.map(|t| contour.space_curve.point(t)),
+        }
+    }
+
+    /// The point at a fraction of the range.
+    fn at(&self, part: f64) -> Point3<f64> {
+        let [lo, hi] = self.piece.range;
+        self.contour.space_curve.point(lo + part * (hi - lo))
+    }
+
+    /// Whether the piece ends at a junction.
+    fn is_open(&self) -> bool {
+        self.piece.start.is_some() || self.piece.end.is_some()
+    }
+}
+
+/// What the rays close to a sample determine.
+enum SampleVerdict {
+    /// The count is the invisibility of the piece.
+    Agrees,
+    /// Something else is too close.
+    Ambiguous,
+    /// The count differs from the invisibility.
+    Wrong(WrongPiece),
+}
+
+/// The faces in front of a sample.
+struct SampleCount {
+    counted: u32,
+    /// Whether the sample lies on a fold of a contour that is no limb.
+    folds: bool,
+}
+
+/// Counts the faces in front of samples.
+struct Counter<'a> {
+    material: &'a RayOracle,
+    projection: Projection,
+    clearance: &'a Clearance,
+    /// Smaller and smaller clearances.
+    closer: Vec<Clearance>,
+}
+
+impl Counter<'_> {
+    /// Compares a sample with the invisibility of its piece.
+    fn verdict(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> SampleVerdict {
+        let SampledPiece { contour, piece, .. } = *sampled;
+        let Some(SampleCount { counted, folds }) = self.count(sampled, place) else {
+            return SampleVerdict::Ambiguous;
+        };
+        let given = piece.quantitative_invisibility;
+        if counted == given && piece.visible == (counted == 0) {
+            return SampleVerdict::Agrees;
+        }
+        let is_on_fold = folds && given == counted + 1 && !piece.visible;
+        // The count may depend on the distance of the rays.
+        if is_on_fold || !self.is_stable(place, counted) {
+            return SampleVerdict::Ambiguous;
+        }
+        SampleVerdict::Wrong(WrongPiece {
+            range: piece.range,
+            contour: contour.id,
+            kind: contour.kind,
+            piece: sampled.index,
+            place: (*place).into(),
+            given,
+            counted,
+        })
+    }
+
+    /// The faces in front of a sample; `None` if something else is too close.
+    fn count(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> Option<SampleCount> {
+        // Seen end-on, a contour has no two sides. All neighbouring rays may miss something that
+        // covers a narrow angle around it.
+        if sampled.end_on || (sampled.is_open() && self.is_near_end(sampled, place)) {
+            return None;
+        }
+        match self.invisibility(place, self.clearance) {
+            SightEvidence::Count(counted) => Some(SampleCount {
+                counted,
+                folds: false,
+            }),
+            // A limb is on its own fold.
+            SightEvidence::Fold(counted) => Some(SampleCount {
+                counted,
+                folds: sampled.contour.kind != ContourKind::Limb,
+            }),
+            SightEvidence::Thin | SightEvidence::Mixed | SightEvidence::Close => None,
+        }
+    }
+
+    /// Whether a sample is close to an end of its piece in the image. Another contour is close
+    /// there.
+    fn is_near_end(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
+        let towards = line_of_sight(&self.projection, place).towards;
+        let lateral = sampled.ends.map(|end| (end - place).cross(&towards).norm());
+        lateral
+            .iter()
+            .any(|lateral| *lateral < NEAR * self.clearance.lateral)
+    }
+
+    /// Whether all lines of sight give the same count, however close they are.
+    fn is_stable(&self, place: &Point3<f64>, counted: u32) -> bool {
+        self.closer
+            .iter()
+            .all(|clearance| match self.invisibility(place, clearance) {
+                SightEvidence::Count(again) | SightEvidence::Fold(again) => again == counted,
+                SightEvidence::Thin => true,
+                SightEvidence::Mixed | SightEvidence::Close => false,
+            })
+    }
+
+    fn invisibility(&self, place: &Point3<f64>, clearance: &Clearance) -> SightEvidence {
+        let sight = |p: &_| line_of_sight(&self.projection, p);
+        self.material.invisibility(place, sight, clearance)
     }
 }
 
@@ -180,16 +267,19 @@ fn closer(clearance: &Clearance) -> Vec<Clearance> {
     all.take_while(|c| c.lateral >= finest).collect()
 }
 
-/// The direction from a point to the eye, and the distance to the eye or the near plane.
-fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> (Vector3<f64>, f64) {
+/// The line from a point to the eye or the near plane.
+fn line_of_sight(projection: &Projection, p: &Point3<f64>) -> SightSegment {
     let eye = projection.towards_eye(p);
     let depth = projection.depth(p);
     let seen = depth - projection.near;
-    let reach = match projection.sight {
+    let length = match projection.sight {
         ViewRay::Eye(_) => eye.distance * (seen / depth),
         ViewRay::Direction(_) => seen,
     };
-    (eye.direction, reach)
+    SightSegment {
+        towards: eye.direction,
+        length,
+    }
 }
 
 /// The number of wrong pieces that are reported individually.

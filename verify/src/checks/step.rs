@@ -59,15 +59,27 @@ impl Checker<'_> {
                 area: mass.area,
             },
         );
-        let of_solids = (shape.solids.len(), evaluation.brep.topology.solids.len());
-        told_of(&measured, of_solids, mass.volume)
+        let solids = SolidCounts {
+            read: shape.solids.len(),
+            known: evaluation.brep.topology.solids.len(),
+        };
+        compared(&measured, solids, mass.volume)
     }
 }
 
-fn told_of(measured: &Measured, (solids, known): (usize, usize), volume: f64) -> Check {
+/// The number of solids of a file, and of its part.
+#[derive(Clone, Copy)]
+struct SolidCounts {
+    read: usize,
+    known: usize,
+}
+
+/// Compares a file that was read with its part.
+fn compared(measured: &Measured, solids: SolidCounts, volume: f64) -> Check {
     let mut wrong: Vec<String> = measured.broken.iter().map(ToString::to_string).collect();
-    if solids != known {
-        wrong.insert(0, format!("{solids} solids, not {known}"));
+    let SolidCounts { read, known } = solids;
+    if read != known {
+        wrong.insert(0, format!("{read} solids, not {known}"));
     }
     let more = wrong.len().saturating_sub(REPORTED);
     wrong.truncate(REPORTED);
@@ -213,7 +225,15 @@ mod tests {
             broken.iter().any(|b| b.rule == StepRule::Chain),
             "{broken:?}"
         );
-        let uses = |b: &rules::Broken| matches!(b.rule, StepRule::TwoUses(2, 2 | -2));
+        let uses = |b: &rules::Broken| {
+            matches!(
+                b.rule,
+                StepRule::TwoUses {
+                    uses: 2,
+                    sum: 2 | -2
+                }
+            )
+        };
         assert!(broken.iter().any(uses), "{broken:?}");
     }
 

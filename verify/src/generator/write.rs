@@ -19,9 +19,9 @@ pub use premio_csg::reader::Format;
 /// rotations by whole quarters of a degree if that explains their digits. It reads other rotations
 /// as rigid ones to f64 precision.
 pub fn write(model: &PartModel, format: Format) -> String {
-    let (builder, part) = built(model);
+    let BuiltModel { builder, solid } = built(model);
     // A model is small, and consists of primitives.
-    writer::write(&builder, part, format).unwrap_or_default()
+    writer::write(&builder, solid, format).unwrap_or_default()
 }
 
 /// Reads a text that [`write()`] made.
@@ -32,7 +32,13 @@ pub fn read(text: &str, format: Format) -> Result<Description, ReadError> {
     reader::read("model", text.as_bytes(), format, &ReadOptions::default())
 }
 
-fn built(model: &PartModel) -> (Builder, SolidId) {
+/// The solid of a model, with its builder.
+struct BuiltModel {
+    builder: Builder,
+    solid: SolidId,
+}
+
+fn built(model: &PartModel) -> BuiltModel {
     let mut builder = Builder::new();
     let mut parts: Vec<SolidId> = Vec::with_capacity(model.nodes().len());
     let exact = |value: f64| number(value, model.notation);
@@ -50,7 +56,10 @@ fn built(model: &PartModel) -> (Builder, SolidId) {
         };
         parts.push(builder.moved(part, placed(&node.steps, &exact)));
     }
-    (builder, parts.last().copied().unwrap_or(SolidId::EMPTY))
+    BuiltModel {
+        builder,
+        solid: parts.last().copied().unwrap_or(SolidId::EMPTY),
+    }
 }
 
 /// The exact number that a finite f64 of a model represents.

@@ -8,7 +8,8 @@
 use crate::camera::{CameraModel, ViewCamera};
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use premio_kernel::geometry::frame::perpendicular;
-use premio_kernel::number::analytic::{Analytic, dot};
+use premio_kernel::number::analytic::dot;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 
 /// Where the lines of sight come from.

@@ -13,8 +13,9 @@ use premio_kernel::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
-use premio_kernel::geometry::trace::{Unresolved, trace};
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::geometry::trace::trace;
+use premio_kernel::geometry::unresolved::Unresolved;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
@@ -168,9 +169,9 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
         .into_iter()
         .map(|c| Limb::new(Curve::Toric(Box::new(c))))
         .collect();
-    for (branch, t) in traced.singular.iter().flat_map(|s| &s.on) {
-        if let Some(limb) = limbs.get_mut(*branch) {
-            limb.nodes.push(*t);
+    for on in traced.singular.iter().flat_map(|s| &s.on) {
+        if let Some(limb) = limbs.get_mut(on.branch) {
+            limb.nodes.push(on.t);
         }
     }
     Ok(limbs)

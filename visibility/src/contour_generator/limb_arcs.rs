@@ -12,7 +12,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::curve_plane::plane_roots;
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::surface::{Surface, Torus};
-use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::geometry::unresolved::Unresolved;
 use premio_kernel::number::predicates::Compare;
 use premio_kernel::number::roots::{Root, Roots};
 

@@ -7,11 +7,12 @@ use crate::contour_generator::facing::is_limb;
 use crate::contour_generator::junctions::{JunctionSupport, Junctions};
 use crate::contour_generator::limb_arcs::{LimbArcs, limb_arcs};
 use crate::contours::{
-    Contour, ContourKind, ContourPiece, ContourSeconds, Contours, ImageCurve, JunctionKind, SCHEMA,
+    Contour, ContourKind, ContourPiece, ContourSeconds, Contours, ImageCurve, Junction,
+    JunctionKind, SCHEMA,
 };
 use crate::image_curve::edgewise::Edgewise;
 use crate::image_curve::image_box::ImageBox;
-use crate::image_curve::monotone_arc::{self, stretches};
+use crate::image_curve::monotone_arc::{self, MonotoneArc, stretches};
 use crate::image_curve::{Image, image};
 use crate::invisibility::{Method, pieces};
 use crate::junction;
@@ -25,7 +26,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::curve_plane::plane_roots;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Plane;
-use premio_kernel::geometry::trace::Unresolved;
+use premio_kernel::geometry::unresolved::Unresolved;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::time::Instant;
 
@@ -72,17 +73,7 @@ pub fn contours_with(
     let started = Instant::now();
     let projection = Projection::new(camera, part_size(brep));
     let scene = Scene::new(brep, &projection, resolution);
-    let hull = scene.bounds();
-    let (distance, most) = (
-        (projection.origin() - hull.centre()).norm(),
-        resolution / ROUNDING,
-    );
-    if hull.diagonal().is_finite() && distance.is_beyond(most) {
-        return Err(ViewError::EyeFar { distance, most });
-    }
-    if scene.eye_inside() {
-        return Err(ViewError::EyeInside(projection.origin()));
-    }
+    check_eye(&scene)?;
     let mut junctions = Junctions::new(&projection, brep.topology.vertices as usize);
     let limbs = limb_arcs(&scene, &mut junctions)?;
     let mut seconds = ContourSeconds {
@@ -90,36 +81,19 @@ pub fn contours_with(
         ..ContourSeconds::default()
     };
     let started = Instant::now();
-    let all = brep.topology.edges.len() + limbs.arcs.len();
-    let mut weave = ContourBuilder {
-        scene: &scene,
-        junctions: &mut junctions,
-        contours: Vec::with_capacity(all),
-        contour_arcs: Vec::with_capacity(all),
-    };
-    weave.edges(&limbs);
-    weave.limbs(&limbs);
-    let (mut contours, mut contour_arcs) = (weave.contours, weave.contour_arcs);
+    let BuiltContours {
+        mut contours,
+        mut contour_arcs,
+    } = ContourBuilder::build(&scene, &mut junctions, &limbs);
     junction::find(&mut contour_arcs, &scene, &mut junctions);
     seconds.junctions = started.elapsed().as_secs_f64();
     let started = Instant::now();
     let found = pieces(&scene, &mut contour_arcs, &mut junctions, method);
     for (contour_arc, pieces) in contour_arcs.iter().zip(found) {
-        let all = &mut contours[contour_arc.contour as usize].pieces;
-        match all.is_empty() {
-            true => *all = pieces,
-            false => all.extend(pieces),
-        }
+        contours[contour_arc.contour as usize].add(pieces);
     }
     let mut junctions = junctions.list;
-    for contour in &contours {
-        for id in contour.pieces.iter().flat_map(ends).flatten() {
-            let at = &mut junctions[id as usize].contours;
-            if !at.contains(&contour.id) {
-                at.push(contour.id);
-            }
-        }
-    }
+    add_contours(&mut junctions, &contours);
     seconds.visibility = started.elapsed().as_secs_f64();
     Ok(Contours {
         schema: SCHEMA,
@@ -129,6 +103,42 @@ pub fn contours_with(
         junctions,
         seconds,
     })
+}
+
+/// Refuses an eye in the material, and one too far away for the resolution.
+fn check_eye(scene: &Scene<'_>) -> Result<(), ViewError> {
+    let eye = scene.projection.origin();
+    let hull = scene.bounds();
+    let (distance, most) = ((eye - hull.centre()).norm(), scene.resolution / ROUNDING);
+    if hull.diagonal().is_finite() && distance.is_beyond(most) {
+        return Err(ViewError::EyeFar { distance, most });
+    }
+    match scene.eye_inside() {
+        true => Err(ViewError::EyeInside(eye)),
+        false => Ok(()),
+    }
+}
+
+impl Contour {
+    /// Adds the pieces of one of its arcs.
+    fn add(&mut self, pieces: Vec<ContourPiece>) {
+        match self.pieces.is_empty() {
+            true => self.pieces = pieces,
+            false => self.pieces.extend(pieces),
+        }
+    }
+}
+
+/// Adds to every junction the contours whose pieces end there.
+fn add_contours(junctions: &mut [Junction], contours: &[Contour]) {
+    for contour in contours {
+        for id in contour.pieces.iter().flat_map(ends).flatten() {
+            let at = &mut junctions[id as usize].contours;
+            if !at.contains(&contour.id) {
+                at.push(contour.id);
+            }
+        }
+    }
 }
 
 fn ends(piece: &ContourPiece) -> [Option<u32>; 2] {
@@ -182,6 +192,15 @@ struct SmoothPart<'a> {
 }
 
 impl Source<'_> {
+    /// A parameter shifted into the cycle that starts with the range.
+    fn in_cycle(&self, t: f64) -> f64 {
+        let lo = self.range[0];
+        match self.curve.period() {
+            Some(period) => lo + (t - lo).rem_euclid(period),
+            None => t,
+        }
+    }
+
     /// The parts between stops, which are in the order of their parameters; a closed arc without
     /// any stays closed.
     fn cut(&self, mut stops: Vec<Stop>) -> Vec<Self> {
@@ -210,6 +229,35 @@ struct ContourBuilder<'s, 'a, 'j, 'p> {
     junctions: &'j mut Junctions<'p>,
     contours: Vec<Contour>,
     contour_arcs: Vec<ContourArc<'a>>,
+}
+
+/// The contours, which have no pieces yet, and their arcs.
+struct BuiltContours<'a> {
+    contours: Vec<Contour>,
+    contour_arcs: Vec<ContourArc<'a>>,
+}
+
+impl<'s, 'a, 'j, 'p> ContourBuilder<'s, 'a, 'j, 'p> {
+    /// The contours of all edges and limbs.
+    fn build(
+        scene: &'s Scene<'a>,
+        junctions: &'j mut Junctions<'p>,
+        limbs: &'a LimbArcs,
+    ) -> BuiltContours<'a> {
+        let all = scene.brep.topology.edges.len() + limbs.arcs.len();
+        let mut builder = Self {
+            scene,
+            junctions,
+            contours: Vec::with_capacity(all),
+            contour_arcs: Vec::with_capacity(all),
+        };
+        builder.edges(limbs);
+        builder.limbs(limbs);
+        BuiltContours {
+            contours: builder.contours,
+            contour_arcs: builder.contour_arcs,
+        }
+    }
 }
 
 impl<'a> ContourBuilder<'_, 'a, '_, '_> {
@@ -340,7 +388,22 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
     /// Cuts an arc at the near plane and keeps what lies beyond.
     fn contour_arc(&mut self, source: Source<'a>, seen: Image) {
         let projection = self.scene.projection;
-        let hull = bounds(source.curve, source.range);
+        let least = self.least_depth(&bounds(source.curve, source.range));
+        if least.is_beyond(projection.near) {
+            return self.push(source, seen);
+        }
+        let stops = self.near_plane_stops(&source);
+        for part in source.cut(stops) {
+            let middle = source.curve.point(0.5 * (part.range[0] + part.range[1]));
+            if projection.depth(&middle).is_beyond(projection.near) {
+                let seen = self.image(&part);
+                self.push(part, seen);
+            }
+        }
+    }
+
+    /// The least depth of a box's corners.
+    fn least_depth(&self, hull: &Aabb) -> f64 {
         let corner = |k: usize| {
             let pick = |i: usize| {
                 if k >> i & 1 == 0 {
@@ -349,12 +412,15 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
                     hull.max[i]
                 }
             };
-            projection.depth(&Point3::new(pick(0), pick(1), pick(2)))
+            let corner = Point3::new(pick(0), pick(1), pick(2));
+            self.scene.projection.depth(&corner)
         };
-        let least = (0..8).map(corner).fold(f64::INFINITY, f64::min);
-        if least.is_beyond(projection.near) {
-            return self.push(source, seen);
-        }
+        (0..8).map(corner).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The stops of an arc at the near plane, in order, with new junctions.
+    fn near_plane_stops(&mut self, source: &Source<'_>) -> Vec<Stop> {
+        let projection = self.scene.projection;
         let plane = Plane {
             frame: Frame::about(
                 projection.origin() + projection.axis() * projection.near,
@@ -374,92 +440,32 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             },
         );
         cuts.sort_by(f64::total_cmp);
-        let junctions = &mut *self.junctions;
-        let stops = cuts.into_iter().map(|t| {
+        let stop = |t: f64| {
             let p = source.curve.point(t);
-            let junction = junctions.add(JunctionKind::NearPlane, JunctionSupport::Alone, &p);
+            let kind = JunctionKind::NearPlane;
             Stop {
                 t,
-                junction: Some(junction),
+                junction: Some(self.junctions.add(kind, JunctionSupport::Alone, &p)),
             }
-        });
-        for part in source.cut(stops.collect()) {
-            let middle = source.curve.point(0.5 * (part.range[0] + part.range[1]));
-            if projection.depth(&middle).is_beyond(projection.near) {
-                let seen = self.image(&part);
-                self.push(part, seen);
-            }
-        }
+        };
+        cuts.into_iter().map(stop).collect()
     }
 
     /// Adds an arc that is not cut.
-    fn push(&mut self, source: Source<'a>, mut seen: Image) {
-        let (range, closed) = (source.range, source.closed);
-        let [lo, hi] = range;
-        let (projection, resolution) = (self.scene.projection, self.scene.resolution);
-        if let Image::General = seen {
-            let brep = self.scene.brep;
-            let surfaces = source.faces.iter().map(|f| brep.surface(f.face));
-            seen = Edgewise::new(
-                source.curve,
-                range,
-                surfaces,
-                projection,
-                [resolution, self.scene.tilt],
-            )
-            .map_or(seen, Image::Edgewise);
-        }
-        let straight = match seen {
-            Image::General | Image::Edgewise(_) => {
-                stretches(source.curve, range, projection, resolution)
-            }
-            _ => Vec::new(),
-        };
+    fn push(&mut self, source: Source<'a>, seen: Image) {
+        let seen = self.seen_edgewise(&source, seen);
+        let straight = self.monotone_arcs(&source, &seen);
         // Of a limb they are its cusps, which are known.
         let turns = match seen {
             Image::General if source.limb => Vec::new(),
-            Image::General => monotone_arc::turns(source.curve, &straight, projection),
-            _ => seen.turns(range),
+            Image::General => monotone_arc::turns(source.curve, &straight, self.scene.projection),
+            _ => seen.turns(source.range),
         };
-        let within = |t: f64| match source.curve.period() {
-            Some(period) => lo + (t - lo).rem_euclid(period),
-            None => t,
-        };
-        // A turning point at the end of an arc is not a separate point.
-        let ends_at = [source.curve.point(lo), source.curve.point(hi)];
-        let near = SPACE_TOLERANCE * self.scene.resolution;
-        let at_end = |t: f64| {
-            let p = source.curve.point(t);
-            ends_at.iter().any(|end| (p - end).norm().is_within(near))
-        };
-        let mut splits: Vec<Split> = Vec::new();
-        for &ArcJunction { t, junction } in &source.marks {
-            let t = within(t);
-            if t.lies_between(range) || closed {
-                splits.push(Split {
-                    t,
-                    junction,
-                    change: Change::Correct,
-                });
-            }
-        }
-        for &t in &turns {
-            if t.lies_between(range) && !at_end(t) || closed {
-                let p = source.curve.point(t);
-                let junction =
-                    self.junctions
-                        .add(JunctionKind::ImageTurn, JunctionSupport::Alone, &p);
-                splits.push(Split {
-                    t,
-                    junction,
-                    change: Change::Correct,
-                });
-            }
-        }
+        let splits = self.splits(&source, &turns);
         self.contour_arcs.push(ContourArc {
             curve: source.curve,
-            range,
-            closed,
+            range: source.range,
+            closed: source.closed,
             ends: source.ends,
             contour: source.contour,
             edge: source.edge,
@@ -471,6 +477,69 @@ impl<'a> ContourBuilder<'_, 'a, '_, '_> {
             hull: ImageBox::EMPTY,
             splits,
         });
+    }
+
+    /// The image of an arc. A general one becomes that of a surface seen edgewise, if the arc lies on
+    /// one.
+    fn seen_edgewise(&self, source: &Source<'_>, seen: Image) -> Image {
+        let Image::General = seen else {
+            return seen;
+        };
+        let brep = self.scene.brep;
+        let surfaces = source.faces.iter().map(|f| brep.surface(f.face));
+        Edgewise::new(
+            source.curve,
+            source.range,
+            surfaces,
+            self.scene.projection,
+            self.scene.resolution,
+            self.scene.tilt,
+        )
+        .map_or(seen, Image::Edgewise)
+    }
+
+    /// The monotone arcs of an image without a closed form; none of one with it.
+    fn monotone_arcs(&self, source: &Source<'_>, seen: &Image) -> Vec<MonotoneArc> {
+        let Scene {
+            projection,
+            resolution,
+            ..
+        } = *self.scene;
+        match seen {
+            Image::General | Image::Edgewise(_) => {
+                stretches(source.curve, source.range, projection, resolution)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The splits of an arc at its marks and at the turning points of its image.
+    fn splits(&mut self, source: &Source<'_>, turns: &[f64]) -> Vec<Split> {
+        let at = |t: f64, junction: u32| Split {
+            t,
+            junction,
+            change: Change::Correct,
+        };
+        let mut splits: Vec<Split> = Vec::new();
+        for &ArcJunction { t, junction } in &source.marks {
+            let t = source.in_cycle(t);
+            if t.lies_between(source.range) || source.closed {
+                splits.push(at(t, junction));
+            }
+        }
+        // A turning point at the end of an arc is not a separate point.
+        let near = SPACE_TOLERANCE * self.scene.resolution;
+        let ends = source.range.map(|end| source.curve.point(end));
+        let at_end = |p: &Point3<f64>| ends.iter().any(|end| (p - end).norm().is_within(near));
+        for &t in turns {
+            let p = source.curve.point(t);
+            if t.lies_between(source.range) && !at_end(&p) || source.closed {
+                let kind = JunctionKind::ImageTurn;
+                let junction = self.junctions.add(kind, JunctionSupport::Alone, &p);
+                splits.push(at(t, junction));
+            }
+        }
+        splits
     }
 }
 

@@ -7,12 +7,12 @@
 
 use crate::camera::projection::{Projection, ViewRay};
 use nalgebra::Point3;
-use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::curve_plane::{line_intersections, plane_roots};
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::Compare;
@@ -39,7 +39,8 @@ impl Edgewise {
         range: [f64; 2],
         surfaces: impl Iterator<Item = &'a Surface>,
         projection: &Projection,
-        [resolution, tilt]: [f64; 2],
+        resolution: f64,
+        tilt: f64,
     ) -> Option<Self> {
         let ViewRay::Direction(sight) = projection.sight else {
             return None;
@@ -99,9 +100,11 @@ impl Edgewise {
         // On the wall the image is that of a ruling.
         let frame = &self.carrier.frame;
         let radius = self.carrier.radius;
-        let ruling = frame.point(cos * radius, sin * radius, 0.0);
-        let line = (&ruling, &frame.z);
-        if line_intersections(curve, range, line, resolution, &mut |t, _| found(t)) {
+        let ruling = Line {
+            origin: frame.point(cos * radius, sin * radius, 0.0),
+            direction: frame.z,
+        };
+        if line_intersections(curve, range, &ruling, resolution, &mut |t, _| found(t)) {
             return;
         }
         let plane = Plane {

@@ -15,7 +15,7 @@ use crate::image_curve::edgewise::Edgewise;
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::{Conic, Curve};
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
 use std::f64::consts::TAU;
 

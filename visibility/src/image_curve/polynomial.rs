@@ -4,19 +4,19 @@
 //! an extremum is zero by the caller's measure, the polynomial touches zero: it is a double root,
 //! even if rounding splits it.
 
-use premio_kernel::number::bisection::bisect_newton;
+use premio_kernel::number::bisection::{ValueAndSlope, bisect_newton};
 use premio_kernel::number::predicates::Compare;
 
 /// A polynomial, `k[i]` the coefficient of the i-th power.
 pub type QuarticPolynomial = [f64; 5];
 
-fn value(k: &QuarticPolynomial, degree: usize, x: f64) -> (f64, f64) {
+fn value(k: &QuarticPolynomial, degree: usize, x: f64) -> ValueAndSlope {
     let (mut v, mut d) = (0.0, 0.0);
     for &c in k[..=degree].iter().rev() {
         d = d * x + v;
         v = v * x + c;
     }
-    (v, d)
+    ValueAndSlope { value: v, slope: d }
 }
 
 /// A few numbers in order.
@@ -67,7 +67,7 @@ pub fn crossings(
     let mut last: Option<(f64, f64)> = None;
     let mut touched = None;
     for (i, &x) in bounds.at[..bounds.count].iter().enumerate() {
-        let v = value(k, 4, x).0;
+        let v = value(k, 4, x).value;
         let inner = i > 0 && i + 1 < bounds.count;
         if inner && touches(x, v) {
             touched = Some(x);
@@ -89,9 +89,9 @@ pub fn crossings(
 /// The sign changes of a polynomial between the roots of its derivative.
 fn simple_roots(k: &QuarticPolynomial, degree: usize, lo: f64, hi: f64, splits: &Few) -> Few {
     let mut roots = Few::default();
-    let mut a = (lo, value(k, degree, lo).0);
+    let mut a = (lo, value(k, degree, lo).value);
     for &x in splits.at[..splits.count].iter().chain([&hi]) {
-        let v = value(k, degree, x).0;
+        let v = value(k, degree, x).value;
         if a.1.is_below_zero() != v.is_below_zero() {
             roots.push(bisect_newton(a.0, x, a.1, |t| value(k, degree, t)));
         }

@@ -155,7 +155,10 @@ impl<'s, 'a> Corrections<'s, 'a> {
 
     fn at_vertex(&self, vertex: VertexId, end: &End<'_, '_>) -> Option<Vec<FaceId>> {
         let seen = self.seen[vertex.index()].get_or_init(|| self.see(vertex));
-        let effect = |corner: &Corner| (corner.face, corner.effect(&seen.towards, end));
+        let effect = |corner: &Corner| FaceEffect {
+            face: corner.face,
+            effect: corner.effect(&seen.towards, end),
+        };
         hiding_of(seen.corners.iter().map(effect))
     }
 
@@ -265,7 +268,7 @@ impl<'s, 'a> Corrections<'s, 'a> {
                 Some(c) if c.facing.is_none() && !self.bends(face, &p, &v) => Effect::Unclear,
                 Some(corner) => corner.effect(&v, end),
             };
-            (face, effect)
+            FaceEffect { face, effect }
         };
         hiding_of(coedges.iter().map(effect))
     }
@@ -394,19 +397,32 @@ impl Corner {
     }
 }
 
+/// The effect of a face on what passes at its corner.
+struct FaceEffect {
+    face: FaceId,
+    effect: Effect,
+}
+
+/// A face that hides.
+struct HidingFace {
+    face: FaceId,
+    /// Its height towards the eye.
+    height: f64,
+}
+
 /// The hiding faces, the nearest to the eye first; none if one is ambiguous, or two are equally
 /// near.
-fn hiding_of(effects: impl Iterator<Item = (FaceId, Effect)>) -> Option<Vec<FaceId>> {
-    let mut hiding: Vec<(f64, FaceId)> = Vec::new();
-    for (face, effect) in effects {
+fn hiding_of(effects: impl Iterator<Item = FaceEffect>) -> Option<Vec<FaceId>> {
+    let mut hiding: Vec<HidingFace> = Vec::new();
+    for FaceEffect { face, effect } in effects {
         match effect {
             Effect::Clear => {}
-            Effect::Hides(height) => hiding.push((height, face)),
+            Effect::Hides(height) => hiding.push(HidingFace { face, height }),
             Effect::Unclear => return None,
         }
     }
-    hiding.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut pairs = hiding.windows(2).map(|w| (w[0].0, w[1].0));
-    let apart = pairs.all(|(near, far)| (near - far).is_beyond(SIGNIFICANT * near));
-    apart.then(|| hiding.into_iter().map(|h| h.1).collect())
+    hiding.sort_by(|a, b| b.height.total_cmp(&a.height));
+    let mut pairs = hiding.windows(2).map(|w| [w[0].height, w[1].height]);
+    let apart = pairs.all(|[near, far]| (near - far).is_beyond(SIGNIFICANT * near));
+    apart.then(|| hiding.into_iter().map(|h| h.face).collect())
 }

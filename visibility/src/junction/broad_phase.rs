@@ -10,8 +10,13 @@ use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 use std::f64::consts::TAU;
 
-/// A link of a chain: its box in the image, and the arc it belongs to.
-type Link = (ImageBox, u32);
+/// A link of a chain.
+struct Link {
+    /// Its box in the image.
+    bounds: ImageBox,
+    /// The arc it belongs to.
+    arc: u32,
+}
 
 /// The number of links up to which a sweep is faster than building a tree.
 const FEW: usize = 192;
@@ -121,10 +126,11 @@ pub fn candidates(
             continue;
         }
         let mut hull = ImageBox::EMPTY;
+        let arc = i as u32;
         links(contour_arc, projection, step, &mut |b| {
-            let b = b.grown(grow);
-            hull = hull.hull(&b);
-            all.push((b, i as u32));
+            let bounds = b.grown(grow);
+            hull = hull.hull(&bounds);
+            all.push(Link { bounds, arc });
         });
         contour_arc.hull = hull;
     }
@@ -143,13 +149,14 @@ pub fn candidates(
 
 /// The pairs of arcs whose links intersect, by a sweep along x.
 fn pairs_by_sweep(links: &mut [Link]) -> Vec<(u32, u32)> {
-    links.sort_unstable_by(|(a, _), (b, _)| a.min[0].total_cmp(&b.min[0]));
+    links.sort_unstable_by(|a, b| a.bounds.min[0].total_cmp(&b.bounds.min[0]));
     let mut pairs = Vec::new();
-    for (k, (a, i)) in links.iter().enumerate() {
-        let beside = links[k + 1..].iter();
-        for (b, j) in beside.take_while(|(b, _)| b.min[0].is_at_most(a.max[0])) {
-            if i != j && a.intersects(b) {
-                pairs.push((*i.min(j), *i.max(j)));
+    for (k, a) in links.iter().enumerate() {
+        let end = a.bounds.max[0];
+        let near = links[k + 1..].iter();
+        for b in near.take_while(|b| b.bounds.min[0].is_at_most(end)) {
+            if a.arc != b.arc && a.bounds.intersects(&b.bounds) {
+                pairs.push((a.arc.min(b.arc), a.arc.max(b.arc)));
             }
         }
     }
@@ -158,9 +165,9 @@ fn pairs_by_sweep(links: &mut [Link]) -> Vec<(u32, u32)> {
 
 /// The pairs of arcs whose links intersect, by an R-tree.
 fn pairs_by_tree(links: &[Link]) -> Vec<(u32, u32)> {
-    let boxes = links.iter().map(|(b, i)| {
-        let corners = Rectangle::from_corners(b.min, b.max);
-        GeomWithData::new(corners, *i)
+    let boxes = links.iter().map(|link| {
+        let corners = Rectangle::from_corners(link.bounds.min, link.bounds.max);
+        GeomWithData::new(corners, link.arc)
     });
     let tree = RTree::bulk_load(boxes.collect());
     tree.intersection_candidates_with_other_tree(&tree)

@@ -16,12 +16,13 @@ use crate::junction::intersect::{Overlap, overlap_of, place_of};
 use crate::junction::overlap::{Runs, Shared};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
-use premio_kernel::number::analytic::Analytic;
-use premio_kernel::number::bisection::bisect_newton;
+use premio_kernel::number::bisection::{ValueAndSlope, bisect_newton};
+use premio_kernel::number::float::Analytic;
+use premio_kernel::number::function::Function;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};
-use premio_kernel::number::roots::{Function, Root, Roots, isolate};
+use premio_kernel::number::roots::{Root, Roots, isolate};
 
 /// The distance in space within which two roots are one, in multiples of the resolution.
 const SAME: f64 = 16.0;
@@ -226,7 +227,10 @@ impl<'x> Graphs<'x> {
         }
         bisect_newton(lo, hi, from, |t| {
             let [x_at, _] = self.jet(curve, t);
-            (x_at.v - x, x_at.d)
+            ValueAndSlope {
+                value: x_at.v - x,
+                slope: x_at.d,
+            }
         })
     }
 
@@ -343,7 +347,10 @@ impl<'x> Graphs<'x> {
     pub fn crossing(&self, [lo, hi]: [f64; 2], from: f64) -> (f64, f64) {
         let s = bisect_newton(lo, hi, from, |s| {
             let gap = self.gap(s);
-            (gap.v, gap.d)
+            ValueAndSlope {
+                value: gap.v,
+                slope: gap.d,
+            }
         });
         (self.gap(s).t, s)
     }

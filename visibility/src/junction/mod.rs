@@ -85,33 +85,13 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
         behind: Vec::new(),
     };
     for (i, j) in pairs {
-        let (a, b) = (&contour_arcs[i as usize], &contour_arcs[j as usize]);
-        let (first, second) = (IndexedArc::new(i, a), IndexedArc::new(j, b));
-        let mut found = |t: f64, s: f64| search.crossing(first.at(t), second.at(s));
-        let overlap = cross(a, b, scene.projection, scene.resolution, &mut found);
-        search.mark_passed_ambiguous(a, b);
-        search.mark_passed_ambiguous(b, a);
-        search.pass_behind(a, second);
-        search.pass_behind(b, first);
-        if i != j {
-            search.turns(first, second);
-            search.turns(second, first);
-        }
-        if overlap == Overlap::Yes && i != j {
-            search.overlap(first, b);
-            search.overlap(second, a);
-            search.mark_all_ambiguous(a);
-            search.mark_all_ambiguous(b);
-        }
+        search.pair(
+            IndexedArc::new(i, &contour_arcs[i as usize]),
+            IndexedArc::new(j, &contour_arcs[j as usize]),
+        );
     }
-    // An image that turns back overlaps itself.
     for (i, a) in contour_arcs.iter().enumerate() {
-        if !a.turns.is_empty() {
-            search.overlap(IndexedArc::new(i as u32, a), a);
-        }
-        if !a.turns.is_empty() || matches!(a.image, Image::Point) {
-            search.mark_all_ambiguous(a);
-        }
+        search.alone(IndexedArc::new(i as u32, a));
     }
     let Search { splits, behind, .. } = search;
     for ArcSplit { index, split } in splits {
@@ -157,6 +137,44 @@ impl Behind {
 }
 
 impl Search<'_, '_, '_, '_> {
+    /// Finds the crossings and overlaps of two arcs, or of an arc with itself.
+    fn pair(&mut self, first: IndexedArc<'_, '_>, second: IndexedArc<'_, '_>) {
+        let (a, b) = (first.arc, second.arc);
+        let Scene {
+            projection,
+            resolution,
+            ..
+        } = *self.scene;
+        let mut found = |t: f64, s: f64| self.crossing(first.at(t), second.at(s));
+        let overlap = cross(a, b, projection, resolution, &mut found);
+        self.mark_passed_ambiguous(a, b);
+        self.mark_passed_ambiguous(b, a);
+        self.pass_behind(a, second);
+        self.pass_behind(b, first);
+        if first.index == second.index {
+            return;
+        }
+        self.turns(first, second);
+        self.turns(second, first);
+        if overlap == Overlap::Yes {
+            self.overlap(first, b);
+            self.overlap(second, a);
+            self.mark_all_ambiguous(a);
+            self.mark_all_ambiguous(b);
+        }
+    }
+
+    /// Finds where an image that turns back overlaps itself.
+    fn alone(&mut self, contour_arc: IndexedArc<'_, '_>) {
+        let a = contour_arc.arc;
+        if !a.turns.is_empty() {
+            self.overlap(contour_arc, a);
+        }
+        if !a.turns.is_empty() || matches!(a.image, Image::Point) {
+            self.mark_all_ambiguous(a);
+        }
+    }
+
     /// Settles a parameter on its arc. A point where the image turns back on itself counts as an
     /// end.
     fn settle(&self, contour_arc: &ContourArc<'_>, t: f64) -> Option<Settled> {
@@ -422,48 +440,71 @@ impl Search<'_, '_, '_, '_> {
         farther: CrossedArc<'_, '_>,
         v: &Vector3<f64>,
     ) {
-        let (near, s, q) = (nearer.arc, nearer.at, nearer.point);
-        let (far, t, p) = (farther.arc, farther.at, farther.point);
+        let (near, far) = (nearer.arc, farther.arc);
+        let (t, p) = (farther.at, farther.point);
         if t.at_end {
             return self.mark_ambiguous(far, t);
         }
-        let change = if s.at_end {
-            Change::Correct
-        } else {
-            let along = far.curve.tangent(t.t);
-            match self.hidden_by(near, s.t, &q, &along, v) {
-                // Faces turned away change nothing, and an invisible contour has no junction.
-                Some(Hidden {
-                    entered: None,
-                    left: None,
-                    ..
-                }) => return,
-                Some(Hidden {
-                    entered,
-                    left,
-                    lateral,
-                }) => Change::Pass(Passing {
-                    by: i32::from(entered.is_some()) - i32::from(left.is_some()),
-                    entered,
-                    left,
-                    ahead: (q - p).dot(v),
-                    lateral,
-                }),
-                None => Change::Correct,
-            }
+        // An invisible contour has no junction.
+        let Some(change) = self.change(&nearer, &farther, v) else {
+            return;
         };
-        let id = self
+        let position = IndexedArc::new(farther.index, far).at(t.t);
+        self.split(position, &p, [near.contour, far.contour], change);
+    }
+
+    /// The effect of a crossing on the farther contour; `None` if the nearer contour's faces are
+    /// turned away, and change nothing.
+    fn change(
+        &self,
+        nearer: &CrossedArc<'_, '_>,
+        farther: &CrossedArc<'_, '_>,
+        v: &Vector3<f64>,
+    ) -> Option<Change> {
+        if nearer.at.at_end {
+            return Some(Change::Correct);
+        }
+        let along = farther.arc.curve.tangent(farther.at.t);
+        match self.hidden_by(nearer.arc, nearer.at.t, &nearer.point, &along, v) {
+            Some(Hidden {
+                entered: None,
+                left: None,
+                ..
+            }) => None,
+            Some(Hidden {
+                entered,
+                left,
+                lateral,
+            }) => Some(Change::Pass(Passing {
+                by: i32::from(entered.is_some()) - i32::from(left.is_some()),
+                entered,
+                left,
+                ahead: (nearer.point - farther.point).dot(v),
+                lateral,
+            })),
+            None => Some(Change::Correct),
+        }
+    }
+
+    /// Splits an arc at a new junction of two contours.
+    fn split(
+        &mut self,
+        position: ArcPosition<'_, '_>,
+        p: &Point3<f64>,
+        contours: [u32; 2],
+        change: Change,
+    ) {
+        let junction = self
             .junctions
-            .add(JunctionKind::T, JunctionSupport::Alone, &p);
-        self.junctions.list[id as usize].contours = vec![near.contour, far.contour];
-        let split = Split {
-            t: t.t,
-            junction: id,
-            change,
-        };
+            .add(JunctionKind::T, JunctionSupport::Alone, p);
+        self.junctions.list[junction as usize].contours = contours.to_vec();
         self.splits.push(ArcSplit {
-            index: farther.index,
-            split,
+            index: position.index,
+            split: Split {
+                t: position.t,
+                junction,
+                change,
+            },
         });
     }
 
@@ -541,51 +582,58 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Splits an arc where `b`, which overlaps it in the image, begins and ends.
-    fn overlap(&mut self, IndexedArc { index, arc: a }: IndexedArc<'_, '_>, b: &ContourArc<'_>) {
+    fn overlap(&mut self, first: IndexedArc<'_, '_>, b: &ContourArc<'_>) {
         if b.closed && b.turns.is_empty() {
             return;
         }
         for s in b.turns.iter().copied().chain(b.range) {
             let q = b.curve.point(s);
-            // In a symmetric view many ends coincide.
-            let h = self.scene.projection.homogeneous(&q);
-            let processed = &mut self.processed[index as usize];
-            let at = [h.x / h.z, h.y / h.z];
-            let near = self.scene.resolution * h.z.recip();
-            if processed
-                .iter()
-                .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]).is_within(near))
-            {
+            if self.was_processed(first.index, &q) {
                 continue;
             }
-            processed.push(at);
             let mut met = Vec::new();
-            parameters_at(a, &q, self.scene, &mut |t| met.push(t));
+            parameters_at(first.arc, &q, self.scene, &mut |t| met.push(t));
             for t in met {
-                let Some(t) = self.settle(a, t) else { continue };
-                let p = a.curve.point(t.t);
-                // Where a curve without a closed form is not reached, its nearest point is no end.
-                let apart = self.apart(&p, &q);
-                if t.at_end || apart.is_beyond(4.0 * IMAGE_TOLERANCE * self.scene.resolution) {
-                    continue;
-                }
-                // Near a turning point or an end, where no monotone arc has a direction, that point
-                // is meant.
-                let nearest = apart.max(IMAGE_TOLERANCE * self.scene.resolution);
-                if self.stop_next_to(a, t.t, &q, nearest).is_some() {
-                    continue;
-                }
-                let id = self
-                    .junctions
-                    .add(JunctionKind::T, JunctionSupport::Alone, &p);
-                self.junctions.list[id as usize].contours = vec![b.contour, a.contour];
-                let split = Split {
-                    t: t.t,
-                    junction: id,
-                    change: Change::Correct,
-                };
-                self.splits.push(ArcSplit { index, split });
+                self.overlap_end(first.at(t), &q, b.contour);
             }
         }
+    }
+
+    /// Whether an arc was already split at an image point, which is recorded. In a symmetric view
+    /// many ends coincide.
+    fn was_processed(&mut self, index: u32, q: &Point3<f64>) -> bool {
+        let h = self.scene.projection.homogeneous(q);
+        let processed = &mut self.processed[index as usize];
+        let at = [h.x / h.z, h.y / h.z];
+        let near = self.scene.resolution * h.z.recip();
+        let is_known = processed
+            .iter()
+            .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]).is_within(near));
+        if !is_known {
+            processed.push(at);
+        }
+        is_known
+    }
+
+    /// Splits an arc where the end `q` of an arc of another contour lies on it in the image.
+    fn overlap_end(&mut self, position: ArcPosition<'_, '_>, q: &Point3<f64>, other: u32) {
+        let a = position.arc;
+        let near = IMAGE_TOLERANCE * self.scene.resolution;
+        let Some(t) = self.settle(a, position.t) else {
+            return;
+        };
+        let p = a.curve.point(t.t);
+        // Where a curve without a closed form is not reached, its nearest point is no end.
+        let apart = self.apart(&p, q);
+        if t.at_end || apart.is_beyond(4.0 * IMAGE_TOLERANCE * self.scene.resolution) {
+            return;
+        }
+        // Near a turning point or an end, where no monotone arc has a direction, that point is
+        // meant.
+        if self.stop_next_to(a, t.t, q, apart.max(near)).is_some() {
+            return;
+        }
+        let contours = [other, a.contour];
+        self.split(position.moved_to(t.t), &p, contours, Change::Correct);
     }
 }

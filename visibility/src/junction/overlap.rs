@@ -45,16 +45,16 @@ impl<'x> Shared<'x> {
         meets(0) && meets(1) && dot2(e, f).is_above_zero()
     }
 
-    /// Whether a point of either curve, with its parameter, is in the range.
-    fn contains(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
+    /// Whether a point of either curve is in the range.
+    fn contains(&self, at: &[CurvePosition; 2], near: f64) -> bool {
         let ranges = [
             [self.at[0].min(self.at[1]), self.at[0].max(self.at[1])],
             self.on,
         ];
         (0..2).all(|k| {
-            let (t, p) = at[k];
+            let CurvePosition { t, point } = at[k];
             let mut ends = self.ends[k].iter();
-            t.lies_in(ranges[k]) || ends.any(|q| (p - q).norm().is_within(near))
+            t.lies_in(ranges[k]) || ends.any(|q| (point - q).norm().is_within(near))
         })
     }
 
@@ -68,13 +68,37 @@ impl<'x> Shared<'x> {
     }
 }
 
+/// A point of a curve.
+#[derive(Clone, Copy)]
+struct CurvePosition {
+    /// The parameter.
+    t: f64,
+    point: Point3<f64>,
+}
+
+impl CurvePosition {
+    fn new(curve: &Curve, t: f64) -> Self {
+        let point = curve.point(t);
+        Self { t, point }
+    }
+}
+
+/// An end of a run.
+#[derive(Clone, Copy)]
+struct RunEnd<'r, 'x> {
+    piece: &'r Shared<'x>,
+    /// The parameter on the second curve.
+    s: f64,
+}
+
 /// Consecutive pieces, each of which continues where the previous one ends.
 struct Run<'x>(Vec<Shared<'x>>);
 
 impl<'x> Run<'x> {
-    fn ends(&self) -> Option<[(&Shared<'x>, f64); 2]> {
+    fn ends(&self) -> Option<[RunEnd<'_, 'x>; 2]> {
         let (first, last) = (self.0.first()?, self.0.last()?);
-        Some([(first, first.on[0]), (last, last.on[1])])
+        let end = |piece, s| RunEnd { piece, s };
+        Some([end(first, first.on[0]), end(last, last.on[1])])
     }
 
     fn length(&self) -> f64 {
@@ -89,7 +113,9 @@ impl<'x> Run<'x> {
 
     /// The contact of the two curves in the image: their parameters there.
     fn contact(&self, resolution: f64) -> Option<(f64, f64)> {
-        let [(first, lo), (last, hi)] = self.ends()?;
+        let [start, end] = self.ends()?;
+        let (first, lo) = (start.piece, start.s);
+        let (last, hi) = (end.piece, end.s);
         let (a, b) = (first.graphs.gap(lo), last.graphs.gap(hi));
         if (a.v * b.v).is_at_most(0.0) {
             let of = self.change(a.v, |x, s| Some(x.graphs.gap(s).v))?;
@@ -124,15 +150,15 @@ impl<'x> Run<'x> {
         all.find(|x| value(x, x.on[1]).is_some_and(changed))
     }
 
-    fn contains(&self, at: &[(f64, Point3<f64>); 2], near: f64) -> bool {
+    fn contains(&self, at: &[CurvePosition; 2], near: f64) -> bool {
         self.0.iter().any(|x| x.contains(at, near))
     }
 
     fn touches(&self, other: &Self, near: f64) -> bool {
         let mut ends = self.ends().into_iter().flatten();
-        ends.any(|(x, _)| {
+        ends.any(|x| {
             let mut others = other.ends().into_iter().flatten();
-            others.any(|(y, _)| x.touches(y, near))
+            others.any(|y| x.piece.touches(y.piece, near))
         })
     }
 }
@@ -205,7 +231,10 @@ impl<'x> Runs<'x> {
             next += 1;
         }
         roots.retain(|&(t, s)| {
-            let at = [(t, curves[0].point(t)), (s, curves[1].point(s))];
+            let at = [
+                CurvePosition::new(curves[0], t),
+                CurvePosition::new(curves[1], s),
+            ];
             !long.iter().any(|x| x.contains(&at, near))
         });
     }

@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use nalgebra::Vector3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
-use premio_kernel::number::analytic::Analytic;
+use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
 use premio_kernel::number::predicates::{Compare, ROUNDING};

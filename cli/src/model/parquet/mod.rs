@@ -40,7 +40,7 @@ pub enum TableError {
 
 /// The table of a model.
 pub fn bytes(records: &[Record]) -> Result<Vec<u8>, TableError> {
-    let (head, rows) = rows(records)?;
+    let TableRows { head, rows } = rows(records)?;
     let head = KeyValue::new(SCHEMA.to_owned(), head.to_string());
     let properties = WriterProperties::builder()
         .set_created_by(concat!("premio ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -60,8 +60,16 @@ pub fn bytes(records: &[Record]) -> Result<Vec<u8>, TableError> {
     Ok(writer.into_inner()?)
 }
 
-/// The first record, and the rows of the others.
-fn rows(records: &[Record]) -> Result<(Value, Vec<Value>), TableError> {
+/// The records of a model.
+struct TableRows {
+    /// The first record.
+    head: Value,
+    /// The rows of the others.
+    rows: Vec<Value>,
+}
+
+/// The rows of a model's table.
+fn rows(records: &[Record]) -> Result<TableRows, TableError> {
     let mut head = Value::Null;
     let mut rows = Vec::new();
     let mut together = together(records)?;
@@ -89,7 +97,7 @@ fn rows(records: &[Record]) -> Result<(Value, Vec<Value>), TableError> {
             Record::Codetection(_) => {}
         }
     }
-    Ok((head, rows))
+    Ok(TableRows { head, rows })
 }
 
 /// By feature: its node of the co-detection tree.

@@ -5,7 +5,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::frame::length;
-use super::super::rigid_fit::{NotRigid, placement};
+use super::super::rigid_fit::{NotRigid, Placement, placement};
 use super::keywords::Word;
 use super::number;
 use crate::transform::Transform;
@@ -35,9 +35,12 @@ impl Placed {
         }
         let matrix: RationalMatrix = [0, 4, 8].map(|row| [0, 1, 2].map(|j| m[row + j].clone()));
         let offset = [3, 7, 11].map(|at| &m[at] / &m[15]);
-        let (factor, found) = match placement(&matrix, offset.clone()) {
+        let ScaledPlacement { factor, found } = match placement(&matrix, offset.clone()) {
             Err(NotRigid::Scaled(_)) => scaled(&matrix, offset),
-            found => (Rational::ONE, found),
+            found => ScaledPlacement {
+                factor: Rational::ONE,
+                found,
+            },
         };
         let found = found.map_err(|_| {
             let found = "a matrix that changes proportions or angles";
@@ -54,21 +57,23 @@ impl Placed {
     }
 }
 
-/// The scale factor of a matrix, and the matrix without it.
-fn scaled(
-    matrix: &RationalMatrix,
-    offset: [Rational; 3],
-) -> (
-    Rational,
-    Result<super::super::rigid_fit::Placement, NotRigid>,
-) {
+/// The motion of a matrix without its scale.
+struct ScaledPlacement {
+    factor: Rational,
+    found: Result<Placement, NotRigid>,
+}
+
+fn scaled(matrix: &RationalMatrix, offset: [Rational; 3]) -> ScaledPlacement {
     let column = [0, 1, 2].map(|i| matrix[i][0].clone());
     let Some(factor) = length(&column) else {
-        return (Rational::ONE, Err(NotRigid::Distorted));
+        return ScaledPlacement {
+            factor: Rational::ONE,
+            found: Err(NotRigid::Distorted),
+        };
     };
     let rigid = matrix
         .each_ref()
         .map(|row| row.each_ref().map(|entry| entry / &factor));
     let found = placement(&rigid, offset);
-    (factor, found)
+    ScaledPlacement { factor, found }
 }

@@ -15,10 +15,10 @@ use premio_kernel::number::rational::Rational;
 
 use self::combination::{Combination, Item};
 use self::keywords::{Word, commands};
-use self::solids::{Solid, Unsupported};
+use self::solids::{Solid, Unsupported, UnsupportedWords};
 use super::error::SpannedError;
 use super::frame::Vector;
-use super::notes::Notes;
+use super::notes::{Notes, Remarks};
 use super::number::literal;
 use super::rigid_fit::F64_DIGITS;
 use super::{Program, ReadOptions};
@@ -46,7 +46,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         None => database.top(source, &mut reader.notes)?,
     };
     let part = reader.part(top)?;
-    let (digits, notes) = reader.notes.finish();
+    let Remarks { digits, notes } = reader.notes.finish();
     Ok(Program {
         builder: reader.builder,
         part,
@@ -364,7 +364,7 @@ impl<'a> Reader<'a> {
 
     fn solid(&mut self, object: &Object<'_>) -> Result<SolidId, SpannedError> {
         let solid = self.shape(object)?.map_err(|reason| {
-            let (found, expected) = reason.parts();
+            let UnsupportedWords { found, expected } = reason.words();
             let found = format!("{}, {found}", quote(object.name.text));
             SpannedError::input(object.kind.span.clone(), found, expected)
         })?;

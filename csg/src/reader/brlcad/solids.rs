@@ -33,9 +33,15 @@ pub(super) enum Unsupported {
     Size(PrimitiveError),
 }
 
+/// The words for a solid that is not supported.
+pub(super) struct UnsupportedWords {
+    pub found: String,
+    pub expected: &'static str,
+}
+
 impl Unsupported {
-    /// What was found, and what was expected.
-    pub(super) fn parts(self) -> (String, &'static str) {
+    /// The words for an error.
+    pub(super) fn words(self) -> UnsupportedWords {
         let (found, expected) = match self {
             Self::Ellipsoid => (
                 "an ellipsoid whose axes are not equal and at right angles",
@@ -50,10 +56,14 @@ impl Unsupported {
             Self::NoDirection => ("a vector without direction", "one of some length"),
             Self::Size(error) => {
                 let found = format!("a solid of wrong size: {error}");
-                return (found, "a solid of positive size");
+                let expected = "a solid of positive size";
+                return UnsupportedWords { found, expected };
             }
         };
-        (found.to_owned(), expected)
+        UnsupportedWords {
+            found: found.to_owned(),
+            expected,
+        }
     }
 }
 

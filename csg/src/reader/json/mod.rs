@@ -10,6 +10,7 @@ use self::value::{Content, Document, Member, Value, ValueId, parse};
 use super::Program;
 use super::error::SpannedError;
 use super::number::{bad_length, literal};
+use super::spanned::Spanned;
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{self, Transform};
@@ -164,9 +165,13 @@ impl<'a> Reader<'a> {
 }
 
 /// A number and its span.
-struct Length {
-    value: Rational,
-    span: Range<usize>,
+type Length = Spanned<Rational>;
+
+/// A step of a transform.
+struct AxisStep {
+    step: transform::TransformStep,
+    /// The value of its axis.
+    axis: ValueId,
 }
 
 /// The primitive with this name, from its numbers in the order of its keys.
@@ -289,9 +294,9 @@ impl<'a> Fields<'a> {
             return Ok(moves);
         };
         for &id in self.array(member, "an array of steps")? {
-            let (step, turned) = self.step(id)?;
+            let AxisStep { step, axis } = self.step(id)?;
             moves.push(step).map_err(|error| {
-                let span = self.document.value(turned).span.clone();
+                let span = self.document.value(axis).span.clone();
                 SpannedError::input(span, error.to_string(), "an axis with a direction")
             })?;
             let bits = moves.motion().bits();
@@ -308,8 +313,7 @@ impl<'a> Fields<'a> {
         Ok(moves)
     }
 
-    /// A step, and the value of its axis.
-    fn step(&self, id: ValueId) -> Result<(transform::TransformStep, ValueId), SpannedError> {
+    fn step(&self, id: ValueId) -> Result<AxisStep, SpannedError> {
         let value = self.document.value(id);
         let expected = "a step: {\"translate\":[x,y,z]}, {\"rotate\":[[x,y,z],degrees]} or \
                         {\"quaternion\":[w,x,y,z]}";
@@ -329,20 +333,23 @@ impl<'a> Fields<'a> {
         match member.key.as_str() {
             "translate" => {
                 let offset = numbers(self.document, member.value, TRIPLE)?;
-                Ok((transform::TransformStep::Shift(offset), member.value))
+                Ok(AxisStep {
+                    step: transform::TransformStep::Shift(offset),
+                    axis: member.value,
+                })
             }
             "quaternion" => {
                 let quaternion = numbers(self.document, member.value, "an array of four numbers")?;
-                Ok((
-                    transform::TransformStep::Quaternion(quaternion),
-                    member.value,
-                ))
+                Ok(AxisStep {
+                    step: transform::TransformStep::Quaternion(quaternion),
+                    axis: member.value,
+                })
             }
             _ => self.rotation(member.value),
         }
     }
 
-    fn rotation(&self, id: ValueId) -> Result<(transform::TransformStep, ValueId), SpannedError> {
+    fn rotation(&self, id: ValueId) -> Result<AxisStep, SpannedError> {
         let expected = "an axis and an angle: [[x,y,z],degrees]";
         let &[axis_id, degrees] = items(self.document, id, expected)? else {
             let span = self.document.value(id).span.clone();
@@ -354,7 +361,10 @@ impl<'a> Fields<'a> {
         };
         let axis = numbers(self.document, axis_id, TRIPLE)?;
         let degrees = number(self.document, degrees)?.value;
-        Ok((transform::TransformStep::Turn { axis, degrees }, axis_id))
+        Ok(AxisStep {
+            step: transform::TransformStep::Turn { axis, degrees },
+            axis: axis_id,
+        })
     }
 }
 

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Dialect, Lexeme, Token};
+use super::super::spanned::Spanned;
 use premio_text::escape::quote;
 
 /// The index of a value in its document.
@@ -70,7 +71,7 @@ enum Open {
     Object {
         start: usize,
         members: Vec<Member>,
-        key: Option<(String, Range<usize>)>,
+        key: Option<Spanned<String>>,
     },
 }
 
@@ -152,10 +153,10 @@ impl Parser<'_> {
 
     fn scalar(&mut self, lexeme: Lexeme) -> Result<ValueId, SpannedError> {
         let text = self.cursor.text(lexeme);
-        let (content, span) = match (lexeme.token, text) {
-            (Token::Text, _) => (Content::Text(self.decode(lexeme)?), lexeme.span()),
-            (Token::Name, "null") => (Content::Null, lexeme.span()),
-            (Token::Name, "true" | "false") => (Content::Bool, lexeme.span()),
+        let read = match (lexeme.token, text) {
+            (Token::Text, _) => Spanned::new(Content::Text(self.decode(lexeme)?), lexeme.span()),
+            (Token::Name, "null") => Spanned::new(Content::Null, lexeme.span()),
+            (Token::Name, "true" | "false") => Spanned::new(Content::Bool, lexeme.span()),
             (Token::Number, _) => self.number(lexeme, lexeme)?,
             (Token::Symbol('-'), _) => {
                 let digits = self.cursor.next();
@@ -163,21 +164,17 @@ impl Parser<'_> {
             }
             _ => return Err(self.cursor.unexpected(lexeme, "a JSON value")),
         };
-        Ok(self.add(content, span))
+        Ok(self.add(read.value, read.span))
     }
 
-    fn number(
-        &self,
-        first: Lexeme,
-        digits: Lexeme,
-    ) -> Result<(Content, Range<usize>), SpannedError> {
+    fn number(&self, first: Lexeme, digits: Lexeme) -> Result<Spanned<Content>, SpannedError> {
         let span = first.span().start..digits.span().end;
         let text = self.cursor.source().get(span.clone()).unwrap_or_default();
         if digits.token != Token::Number || !is_json_number(text) {
             let expected = "a number as JSON writes it, such as `-0.5` or `1e-3`";
             return Err(SpannedError::input(span, quote(text), expected));
         }
-        Ok((Content::Number(text.to_owned()), span))
+        Ok(Spanned::new(Content::Number(text.to_owned()), span))
     }
 
     fn decode(&self, lexeme: Lexeme) -> Result<String, SpannedError> {
@@ -185,14 +182,14 @@ impl Parser<'_> {
             .map_err(|_| self.cursor.unexpected(lexeme, "a text as JSON writes it"))
     }
 
-    fn key(&mut self) -> Result<(String, Range<usize>), SpannedError> {
+    fn key(&mut self) -> Result<Spanned<String>, SpannedError> {
         let lexeme = self.cursor.next();
         if lexeme.token != Token::Text {
             return Err(self.cursor.unexpected(lexeme, "a key in quotes"));
         }
         let key = self.decode(lexeme)?;
         self.cursor.expect(':', "after the key")?;
-        Ok((key, lexeme.span()))
+        Ok(Spanned::new(key, lexeme.span()))
     }
 
     fn after_value(&mut self, value: ValueId) -> Result<After, SpannedError> {
@@ -213,10 +210,10 @@ impl Parser<'_> {
                 mut members,
                 key,
             }) => {
-                if let Some((key, key_span)) = key {
+                if let Some(key) = key {
                     members.push(Member {
-                        key,
-                        key_span,
+                        key: key.value,
+                        key_span: key.span,
                         value,
                     });
                 }

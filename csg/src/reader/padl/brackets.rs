@@ -1,13 +1,12 @@
 //! The meaning of a bracket in `.padl`: grouping, the arguments of a primitive, or the motions of
 //! `AT`.
 
-use std::ops::Range;
-
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::lexer::Lexeme;
 use super::super::number::bad_length;
+use super::super::spanned::Spanned;
 use super::expression::Operand;
 use super::keywords::{MOTIONS, Shape};
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
@@ -76,31 +75,39 @@ impl<'a> Bracket<'a> {
         }
     }
 
-    /// The solid of the bracket, and its start.
+    /// The solid of the bracket.
     pub(super) fn end(
         self,
         close: Lexeme,
         builder: &mut Builder,
-    ) -> Result<Option<(SolidId, usize)>, SpannedError> {
+    ) -> Result<Option<BracketSolid>, SpannedError> {
         match self {
             Self::Statement | Self::Group { .. } => Ok(None),
             Self::Call(call) => {
                 let start = call.keyword.span().start;
                 let primitive = call.primitive(close)?;
-                Ok(Some((builder.primitive(primitive), start)))
+                let solid = builder.primitive(primitive);
+                Ok(Some(BracketSolid { solid, start }))
             }
             Self::At(placing) => {
                 if !placing.any {
                     let expected = format!("a motion, one of `{}`", MOTIONS.join("`, `"));
                     return Err(SpannedError::input(close.span(), "`)`", expected));
                 }
-                Ok(Some((
-                    builder.moved(placing.part, placing.moves),
-                    placing.start,
-                )))
+                Ok(Some(BracketSolid {
+                    solid: builder.moved(placing.part, placing.moves),
+                    start: placing.start,
+                }))
             }
         }
     }
+}
+
+/// The solid of a bracket.
+pub(super) struct BracketSolid {
+    pub solid: SolidId,
+    /// Where its text starts.
+    pub start: usize,
 }
 
 /// A primitive whose arguments are being read.
@@ -109,7 +116,7 @@ pub(super) struct Call<'a> {
     keyword: Lexeme,
     open: Lexeme,
     /// The values in the order of [`Shape::arguments`].
-    values: [Option<(Rational, Range<usize>)>; 3],
+    values: [Option<Spanned<Rational>>; 3],
     current: usize,
     current_name: &'a str,
 }
@@ -151,7 +158,7 @@ impl<'a> Call<'a> {
         let what_for = format!("for `{}`", self.current_name);
         let value = operand.number(&what_for)?;
         if let Some(slot) = self.values.get_mut(self.current) {
-            *slot = Some((value, span));
+            *slot = Some(Spanned::new(value, span));
         }
         Ok(())
     }
@@ -170,12 +177,12 @@ impl<'a> Call<'a> {
         }
         let value = |index: usize| {
             let value = self.values.get(index).and_then(Option::as_ref);
-            value.map_or(Rational::ZERO, |(value, _)| value.clone())
+            value.map_or(Rational::ZERO, |known| known.value.clone())
         };
         make(self.shape, value).map_err(|error| {
             let index = argument_index(self.shape, error.dimension());
             match self.values.get(index).and_then(Option::as_ref) {
-                Some((value, span)) => bad_length(error, Some(value), span.clone()),
+                Some(Spanned { value, span }) => bad_length(error, Some(value), span.clone()),
                 None => self.without_apex_radius(error),
             }
         })
@@ -184,7 +191,7 @@ impl<'a> Call<'a> {
     /// The cone's optional radius was omitted: point at the one that was given.
     fn without_apex_radius(&self, error: PrimitiveError) -> SpannedError {
         match &self.values[0] {
-            Some((value, span)) => bad_length(error, Some(value), span.clone()),
+            Some(Spanned { value, span }) => bad_length(error, Some(value), span.clone()),
             None => bad_length(error, None, self.keyword.span()),
         }
     }

@@ -16,6 +16,7 @@ use self::keywords::{KEYWORDS, Keyword};
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::number::literal;
+use super::spanned::Spanned;
 use super::{Program, ReadOptions};
 use crate::builder::{Builder, SolidId};
 use premio_text::LineColumn;
@@ -24,7 +25,7 @@ use premio_text::escape::quote;
 pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     let mut parser = Parser::new(source)?;
     while parser.statement()? {}
-    let (part, span) = parser.part(options.part.as_deref())?;
+    let Spanned { value: part, span } = parser.part(options.part.as_deref())?;
     Ok(Program {
         builder: parser.builder,
         part,
@@ -50,7 +51,7 @@ struct Parser<'a> {
     cursor: Cursor<'a>,
     builder: Builder,
     names: HashMap<&'a str, Definition>,
-    last_solid: Option<(SolidId, Range<usize>)>,
+    last_solid: Option<Spanned<SolidId>>,
     frames: Vec<Frame<'a>>,
 }
 
@@ -85,7 +86,7 @@ impl<'a> Parser<'a> {
         self.cursor.expect('=', "after the name that is set")?;
         let value = self.value()?;
         if let Value::Solid(part) = value {
-            self.last_solid = Some((part, name.span()));
+            self.last_solid = Some(Spanned::new(part, name.span()));
         }
         let definition = Definition {
             value,
@@ -335,8 +336,8 @@ impl<'a> Parser<'a> {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
-        if let Some((part, start)) = frame.bracket.end(close, &mut self.builder)? {
-            self.push(Value::Solid(part), start..close.span().end);
+        if let Some(made) = frame.bracket.end(close, &mut self.builder)? {
+            self.push(Value::Solid(made.solid), made.start..close.span().end);
         }
         Ok(())
     }
@@ -355,7 +356,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The requested part or the last solid, and where it was set.
-    fn part(&self, wanted: Option<&str>) -> Result<(SolidId, Range<usize>), SpannedError> {
+    fn part(&self, wanted: Option<&str>) -> Result<Spanned<SolidId>, SpannedError> {
         let end = self.cursor.source().len();
         let Some(wanted) = wanted else {
             return self.last_solid.clone().ok_or_else(|| {
@@ -370,7 +371,7 @@ impl<'a> Parser<'a> {
             Some(Definition {
                 value: Value::Solid(part),
                 span,
-            }) => Ok((*part, span.clone())),
+            }) => Ok(Spanned::new(*part, span.clone())),
             Some(Definition { value, span }) => {
                 let found = format!("{}, which is {}", quote(wanted), value.describe());
                 Err(SpannedError::input(

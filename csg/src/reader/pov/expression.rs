@@ -8,6 +8,7 @@ use super::super::error::SpannedError;
 use super::super::frame::Vector;
 use super::super::lexer::{Lexeme, Token};
 use super::super::number::{check_length, literal};
+use super::super::spanned::Spanned;
 use super::keywords::truth;
 use super::{Reader, Value};
 use crate::transform::along;
@@ -34,26 +35,27 @@ impl Operand {
         }
     }
 
-    /// A number and its span.
-    pub(super) fn number(self) -> Result<(Rational, Range<usize>), SpannedError> {
+    /// A number.
+    pub(super) fn number(self) -> Result<Spanned<Rational>, SpannedError> {
         match self.components.as_slice() {
-            [number] => Ok((number.clone(), self.span)),
+            [number] => Ok(Spanned::new(number.clone(), self.span)),
             _ => Err(SpannedError::input(self.span, "a vector", "a number")),
         }
     }
 
-    /// A vector of three components, and its span. A number stands for three equal components; a
-    /// vector of two gets a zero as its third.
-    pub(super) fn vector(self) -> Result<(Vector, Range<usize>), SpannedError> {
-        match self.components.as_slice() {
-            [n] => Ok(([n.clone(), n.clone(), n.clone()], self.span)),
-            [x, y] => Ok(([x.clone(), y.clone(), Rational::ZERO], self.span)),
-            [x, y, z] => Ok(([x.clone(), y.clone(), z.clone()], self.span)),
+    /// A vector of three components. A number stands for three equal components; a vector of two
+    /// gets a zero as its third.
+    pub(super) fn vector(self) -> Result<Spanned<Vector>, SpannedError> {
+        let vector = match self.components.as_slice() {
+            [n] => [n.clone(), n.clone(), n.clone()],
+            [x, y] => [x.clone(), y.clone(), Rational::ZERO],
+            [x, y, z] => [x.clone(), y.clone(), z.clone()],
             other => {
                 let found = format!("a vector of {}", other.len());
-                Err(SpannedError::input(self.span, found, "a vector of three"))
+                return Err(SpannedError::input(self.span, found, "a vector of three"));
             }
-        }
+        };
+        Ok(Spanned::new(vector, self.span))
     }
 }
 
@@ -92,12 +94,12 @@ impl Operator {
 
 impl Reader<'_> {
     /// A number.
-    pub(super) fn number(&mut self) -> Result<(Rational, Range<usize>), SpannedError> {
+    pub(super) fn number(&mut self) -> Result<Spanned<Rational>, SpannedError> {
         self.expression()?.number()
     }
 
     /// A vector of three.
-    pub(super) fn vector(&mut self) -> Result<(Vector, Range<usize>), SpannedError> {
+    pub(super) fn vector(&mut self) -> Result<Spanned<Vector>, SpannedError> {
         self.expression()?.vector()
     }
 
@@ -208,7 +210,7 @@ impl Reader<'_> {
     fn components(&mut self, open: Lexeme, depth: usize) -> Result<Operand, SpannedError> {
         let mut components = Vec::new();
         loop {
-            components.push(self.sum(depth)?.number()?.0);
+            components.push(self.sum(depth)?.number()?.value);
             self.comma();
             let next = self.cursor.peek();
             if next.is('>') {

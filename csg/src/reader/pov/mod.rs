@@ -18,7 +18,8 @@ use self::keywords::{PASSED_OVER, SOLIDS};
 use self::solid::Object;
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
-use super::notes::Notes;
+use super::notes::{Notes, Remarks};
+use super::spanned::Spanned;
 use super::{Program, ReadOptions};
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
@@ -40,12 +41,12 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         inside: 0,
     };
     reader.scene()?;
-    let (part, span) = match &options.part {
+    let Spanned { value: part, span } = match &options.part {
         Some(name) => reader.declared(name)?,
-        None => (reader.whole()?, 0..source.len()),
+        None => Spanned::new(reader.whole()?, 0..source.len()),
     };
     reader.notes.add(LEFT_HANDED, span.start..span.start);
-    let (digits, notes) = reader.notes.finish();
+    let Remarks { digits, notes } = reader.notes.finish();
     Ok(Program {
         builder: reader.builder,
         part,
@@ -85,7 +86,7 @@ struct Reader<'a> {
     cursor: Cursor<'a>,
     builder: Builder,
     names: HashMap<&'a str, Value>,
-    scene: Vec<(Object, Range<usize>)>,
+    scene: Vec<Spanned<Object>>,
     notes: Notes,
     /// The included files, which are not read.
     included: Vec<&'a str>,
@@ -105,7 +106,7 @@ impl<'a> Reader<'a> {
                 Token::Symbol('#') => self.directive()?,
                 Token::Name if keywords::is_object(text) => {
                     let object = self.object(lexeme)?;
-                    self.scene.push((object, lexeme.span()));
+                    self.scene.push(Spanned::new(object, lexeme.span()));
                 }
                 Token::Name if PASSED_OVER.contains(&text) => self.pass_over_block(lexeme)?,
                 _ => return Err(self.statement_expected(lexeme)),
@@ -305,13 +306,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The object declared with a name, and its span.
-    fn declared(&mut self, name: &str) -> Result<(SolidId, Range<usize>), SpannedError> {
+    /// The object declared with a name.
+    fn declared(&mut self, name: &str) -> Result<Spanned<SolidId>, SpannedError> {
         let end = self.cursor.source().len();
         match self.names.get(name).cloned() {
             Some(Value::Object(object, span)) => {
                 let part = object.solid(&mut self.builder, span.clone())?;
-                Ok((part, span))
+                Ok(Spanned::new(part, span))
             }
             Some(other) => {
                 let found = format!("{}, which is {}", quote(name), other.describe());
@@ -351,8 +352,8 @@ impl<'a> Reader<'a> {
             });
         }
         let mut parts = Vec::new();
-        for (object, span) in std::mem::take(&mut self.scene) {
-            parts.push(object.solid(&mut self.builder, span)?);
+        for Spanned { value, span } in std::mem::take(&mut self.scene) {
+            parts.push(value.solid(&mut self.builder, span)?);
         }
         Ok(self.builder.operation(Operation::Union, &parts))
     }

@@ -2,6 +2,7 @@
 
 use super::super::error::SpannedError;
 use super::super::lexer::{Lexeme, Token};
+use super::super::spanned::Spanned;
 use super::keywords::{self, FLAGS, NOT_OURS, REFUSED, SOLIDS, SURFACES};
 use super::solid::{self, Object};
 use super::{NO_MACROS, Reader, Value};
@@ -120,35 +121,35 @@ impl Reader<'_> {
         let text = self.cursor.text(word);
         let made = match text {
             "box" => {
-                let (a, _) = self.vector()?;
+                let a = self.vector()?.value;
                 self.comma();
-                let (b, span) = self.vector()?;
-                solid::block(a, b, span)
+                let b = self.vector()?;
+                solid::block(a, b.value, b.span)
             }
             "sphere" => {
-                let (middle, _) = self.vector()?;
+                let middle = self.vector()?.value;
                 self.comma();
                 let radius = self.number()?;
                 solid::sphere(&mut self.builder, middle, radius)
             }
             "torus" => {
-                let (major, _) = self.number()?;
+                let major = self.number()?.value;
                 self.comma();
                 let minor = self.number()?;
                 solid::torus(&mut self.builder, major, minor)
             }
             _ => {
-                let (base, _) = self.vector()?;
+                let base = self.vector()?.value;
                 self.comma();
                 let first = if text == "cone" {
-                    Some(self.number()?.0)
+                    Some(self.number()?.value)
                 } else {
                     None
                 };
                 self.comma();
-                let (top, _) = self.vector()?;
+                let top = self.vector()?.value;
                 self.comma();
-                let (last, span) = self.number()?;
+                let Spanned { value: last, span } = self.number()?;
                 let radii = [first.unwrap_or_else(|| last.clone()), last];
                 solid::cone(&mut self.builder, [base, top], radii, span)
             }
@@ -214,15 +215,15 @@ impl Reader<'_> {
         let text = self.cursor.text(word);
         match text {
             "translate" => {
-                let (by, _) = self.vector()?;
+                let by = self.vector()?.value;
                 Ok(object.translated(&mut self.builder, by))
             }
             "rotate" => {
-                let (degrees, _) = self.vector()?;
+                let degrees = self.vector()?.value;
                 Ok(object.rotated(&mut self.builder, degrees))
             }
             "scale" => {
-                let (by, span) = self.vector()?;
+                let Spanned { value: by, span } = self.vector()?;
                 Ok(object.scaled(&mut self.builder, by, span))
             }
             "inverse" => {

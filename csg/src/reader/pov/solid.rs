@@ -7,6 +7,7 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::frame::{Axis, Vector, difference};
 use super::super::number::bad_length;
+use super::super::spanned::Spanned;
 use crate::builder::{Builder, SolidId};
 use crate::primitive::{Primitive, PrimitiveError};
 use crate::transform::{Transform, TransformStep};
@@ -54,7 +55,8 @@ impl From<SpannedError> for Object {
 fn placed(
     builder: &mut Builder,
     made: Result<Primitive, PrimitiveError>,
-    (last, span): (Option<&Rational>, &Range<usize>),
+    last: Option<&Rational>,
+    span: &Range<usize>,
     moves: Transform,
 ) -> Result<SolidId, SpannedError> {
     let primitive = made.map_err(|error| bad_length(error, last, span.clone()))?;
@@ -80,11 +82,12 @@ pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, 
 pub(super) fn sphere(
     builder: &mut Builder,
     middle: Vector,
-    (radius, span): (Rational, Range<usize>),
+    radius: Spanned<Rational>,
 ) -> Result<Object, SpannedError> {
     let moves = Transform::shift(middle);
-    let made = Primitive::sphere(radius.clone());
-    placed(builder, made, (Some(&radius), &span), moves).map(Object::from)
+    let Spanned { value, span } = radius;
+    let made = Primitive::sphere(value.clone());
+    placed(builder, made, Some(&value), &span, moves).map(Object::from)
 }
 
 /// A cone from the centre of its base to that of its top; a cylinder if the radii are equal.
@@ -104,19 +107,20 @@ pub(super) fn cone(
     };
     let moves = axis.turn.then(Transform::shift(base));
     let made = Primitive::frustum(radius, end, axis.length);
-    placed(builder, made, (None, &span), moves).map(Object::from)
+    placed(builder, made, None, &span, moves).map(Object::from)
 }
 
 /// A torus about the y axis.
 pub(super) fn torus(
     builder: &mut Builder,
     major: Rational,
-    (minor, span): (Rational, Range<usize>),
+    minor: Spanned<Rational>,
 ) -> Result<Object, SpannedError> {
     let axis = Axis::new(&[0, 1, 0].map(Rational::from));
     let moves = axis.map_or_else(Transform::new, |axis| axis.turn);
-    let made = Primitive::torus(major, minor.clone());
-    placed(builder, made, (Some(&minor), &span), moves).map(Object::from)
+    let Spanned { value, span } = minor;
+    let made = Primitive::torus(major, value.clone());
+    placed(builder, made, Some(&value), &span, moves).map(Object::from)
 }
 
 impl Object {
@@ -238,7 +242,7 @@ impl Shape {
             Self::Box(corners) => {
                 let [least, greatest] = *corners;
                 let made = Primitive::block(difference(&greatest, &least));
-                placed(builder, made, (None, &(0..0)), Transform::shift(least))
+                placed(builder, made, None, &(0..0), Transform::shift(least))
             }
         }
     }

@@ -221,7 +221,7 @@ fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argumen
             if depth == MAX_DEPTH {
                 return Err(cursor.unexpected(first, format!("lists at most {MAX_DEPTH} deep")));
             }
-            let (items, end) = list(cursor, depth + 1)?;
+            let ListItems { items, end } = list(cursor, depth + 1)?;
             span.end = end;
             Value::List(items)
         }
@@ -257,7 +257,14 @@ fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, 
     }
 }
 
-fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<(Vec<Argument>, usize), SpannedError> {
+/// The items of a list.
+struct ListItems {
+    items: Vec<Argument>,
+    /// Where its text ends.
+    end: usize,
+}
+
+fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<ListItems, SpannedError> {
     let mut items = Vec::new();
     while !cursor.peek().is(']') {
         let first = cursor.next();
@@ -268,5 +275,6 @@ fn list(cursor: &mut Cursor<'_>, depth: usize) -> Result<(Vec<Argument>, usize),
         cursor.next();
     }
     let close = cursor.expect(']', "or `,` after an item of a list")?;
-    Ok((items, close.span().end))
+    let end = close.span().end;
+    Ok(ListItems { items, end })
 }

@@ -7,7 +7,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::arguments::{Argument, Arguments, Value};
-use super::shapes::{Shape, check_smooth, checked, half, length, radius};
+use super::shapes::{MovedPrimitive, Shape, check_smooth, checked, half, length, radius};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 
@@ -84,7 +84,8 @@ pub(super) fn circle(
     check_smooth(arguments, smooth)?;
     let cylinder = Primitive::cylinder(radius, raise.height.clone());
     let moves = raise.at(Rational::ZERO, Rational::ZERO);
-    Ok(Some((checked(cylinder, &arguments.span)?, moves)))
+    let cylinder = checked(cylinder, &arguments.span)?;
+    Ok(Some(MovedPrimitive::new(cylinder, moves)))
 }
 
 pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
@@ -105,7 +106,8 @@ pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, 
         raise.at(Rational::ZERO, Rational::ZERO)
     };
     let block = Primitive::block([x, y, raise.height.clone()]);
-    Ok(Some((checked(block, &arguments.span)?, moves)))
+    let block = checked(block, &arguments.span)?;
+    Ok(Some(MovedPrimitive::new(block, moves)))
 }
 
 /// A triangle with a right angle between legs along the axes: a wedge.
@@ -177,7 +179,7 @@ fn wedge(
     corner: &Point,
     leg_x: Rational,
     leg_y: Rational,
-) -> Result<(Primitive, Transform), SpannedError> {
+) -> Result<MovedPrimitive, SpannedError> {
     let sign = |leg: &Rational| if *leg > Rational::ZERO { 1i32 } else { -1 };
     let (u, v) = (sign(&leg_x), sign(&leg_y));
     // Columns (u,0,0), (0,0,w), (0,v,0): the determinant is -u v w.
@@ -194,5 +196,6 @@ fn wedge(
     let size = [leg_x * Rational::from(u), height, leg_y * Rational::from(v)];
     let wedge = checked(Primitive::wedge(size), &arguments.span)?;
     let turn = Transform::quarter_turns(&matrix).unwrap_or_default();
-    Ok((wedge, turn.then(Transform::shift(offset))))
+    let moves = turn.then(Transform::shift(offset));
+    Ok(MovedPrimitive::new(wedge, moves))
 }

@@ -12,7 +12,7 @@ use self::arguments::Arguments;
 use self::nodes::{Around, Kind, Node};
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
-use super::notes::Notes;
+use super::notes::{Notes, Remarks};
 use super::{Program, ReadOptions};
 use crate::builder::{Builder, SolidId};
 use premio_text::LineColumn;
@@ -21,7 +21,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
     let cursor = Cursor::new(source, Dialect::Scad)?;
     let mut reader = Reader::new(cursor, options.smooth);
     let part = reader.file()?;
-    let (digits, notes) = reader.notes.finish();
+    let Remarks { digits, notes } = reader.notes.finish();
     Ok(Program {
         builder: reader.builder,
         part,
@@ -46,6 +46,12 @@ struct Frame {
     live: bool,
     /// Whether this is the subtree marked with `!`.
     root: bool,
+}
+
+/// A node with the marks before it.
+struct MarkedNode {
+    marks: Marks,
+    name: Lexeme,
 }
 
 /// The marks before a node.
@@ -163,14 +169,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn marks(&mut self, mut lexeme: Lexeme) -> (Marks, Lexeme) {
+    /// Reads the marks before a node.
+    fn marks(&mut self, mut lexeme: Lexeme) -> MarkedNode {
         let mut marks = Marks::default();
         loop {
             match lexeme.token {
                 Token::Symbol('*' | '%') => marks.dropped = true,
                 Token::Symbol('!') => marks.root = true,
                 Token::Symbol('#') => {}
-                _ => return (marks, lexeme),
+                _ => {
+                    let name = lexeme;
+                    return MarkedNode { marks, name };
+                }
             }
             lexeme = self.cursor.next();
         }
@@ -178,7 +188,7 @@ impl<'a> Reader<'a> {
 
     /// Reads one node, up to the start of its block.
     fn statement(&mut self, first: Lexeme) -> Result<(), SpannedError> {
-        let (marks, name) = self.marks(first);
+        let MarkedNode { marks, name } = self.marks(first);
         if name.token != Token::Name {
             return Err(self
                 .cursor
@@ -222,7 +232,7 @@ impl<'a> Reader<'a> {
     }
 
     fn place(&mut self, shape: shapes::Shape) -> SolidId {
-        let Some((primitive, moves)) = shape else {
+        let Some(shapes::MovedPrimitive { primitive, moves }) = shape else {
             return SolidId::EMPTY;
         };
         let part = self.builder.primitive(primitive);

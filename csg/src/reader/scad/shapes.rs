@@ -12,7 +12,19 @@ use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::Transform;
 
 /// A primitive in its position; `None` for one of size zero, which adds nothing.
-pub(super) type Shape = Option<(Primitive, Transform)>;
+pub(super) type Shape = Option<MovedPrimitive>;
+
+/// A primitive in its position.
+pub(super) struct MovedPrimitive {
+    pub primitive: Primitive,
+    pub moves: Transform,
+}
+
+impl MovedPrimitive {
+    pub(super) fn new(primitive: Primitive, moves: Transform) -> Self {
+        Self { primitive, moves }
+    }
+}
 
 /// A non-negative length.
 pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, SpannedError> {
@@ -80,7 +92,7 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
     } else {
         Transform::new()
     };
-    Ok(Some((
+    Ok(Some(MovedPrimitive::new(
         checked(Primitive::block(size), &arguments.span)?,
         moves,
     )))
@@ -123,7 +135,7 @@ pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, S
     }
     check_smooth(arguments, smooth)?;
     let sphere = checked(Primitive::sphere(radius), &arguments.span)?;
-    Ok(Some((sphere, Transform::new())))
+    Ok(Some(MovedPrimitive::new(sphere, Transform::new())))
 }
 
 pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape, SpannedError> {
@@ -150,7 +162,7 @@ pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape,
         Rational::ZERO
     };
     let frustum = checked(Primitive::frustum(base, top, height), &arguments.span)?;
-    Ok(Some((frustum, shift_z(lift))))
+    Ok(Some(MovedPrimitive::new(frustum, shift_z(lift))))
 }
 
 /// A circle revolved about the y axis of its plane, which becomes z: a torus.
@@ -183,5 +195,5 @@ pub(super) fn revolved_circle(
                 "a circle clear of the axis, which makes a torus",
             ),
         })?;
-    Ok(Some((torus, shift_z(y.clone()))))
+    Ok(Some(MovedPrimitive::new(torus, shift_z(y.clone()))))
 }

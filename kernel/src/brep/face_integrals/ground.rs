@@ -97,13 +97,20 @@ impl<N: Float> Ground<N> {
     }
 }
 
+/// The edge rounded to f64.
+#[derive(Clone, Copy)]
+pub(super) struct RoundedEdge<'a> {
+    pub ground: &'a Ground,
+    pub curve: &'a Curve,
+}
+
 /// The integrand along an edge.
 pub(super) struct OnEdge<'a, N: Float> {
     pub ground: &'a Ground<N>,
     pub curve: &'a Curve<N>,
     /// The v at which G starts, and a v on the edge.
     pub from: [N; 2],
-    pub rounded_f64: Option<(&'a Ground, &'a Curve)>,
+    pub rounded_f64: Option<RoundedEdge<'a>>,
 }
 
 impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
@@ -112,7 +119,7 @@ impl<N: Float> Integrand<N, 6> for OnEdge<'_, N> {
     }
 
     fn roughly(&self, t: f64) -> Option<[f64; 6]> {
-        let (ground, curve) = self.rounded_f64?;
+        let RoundedEdge { ground, curve } = self.rounded_f64?;
         Some(ground.on_edge(curve, t, self.from.map(N::rounded)))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Moments;
 use super::density::{Density, add};
-use super::ground::OnEdge;
+use super::ground::{OnEdge, RoundedEdge};
 use crate::brep::Brep;
 use crate::brep::topology::{CoedgeId, FaceId};
 use crate::geometry::surface::Surface;
@@ -67,10 +67,7 @@ fn loop_sum<N: Float>(
     for &c in coedges {
         let coedge = brep.topology.coedge(c);
         let curve = brep.curve(coedge.edge);
-        let rough = density
-            .rounded_f64
-            .as_ref()
-            .map(|ground| (ground, curve.to_f64()));
+        let rounded_curve = density.rounded_f64.as_ref().map(|_| curve.to_f64());
         let [lo, hi] = brep.range(coedge.edge);
         let mut breaks = curve.breaks(lo, hi);
         breaks.extend(marks(c));
@@ -89,7 +86,11 @@ fn loop_sum<N: Float>(
                 ground: &density.ground,
                 curve,
                 from: [start, near],
-                rounded_f64: rough.as_ref().map(|(ground, curve)| (*ground, curve)),
+                rounded_f64: density
+                    .rounded_f64
+                    .as_ref()
+                    .zip(rounded_curve.as_ref())
+                    .map(|(ground, curve)| RoundedEdge { ground, curve }),
             };
             let part = adaptive(pair[0], pair[1], &floor, &on_edge);
             for (s, v) in total.iter_mut().zip(part) {

@@ -79,7 +79,10 @@ fn round<N: Float>(
     m: N,
     d: N,
 ) -> Moments<N> {
-    let (one, [[c1, s1], [c2, s2], [c3, s3]]) = waves(m, d);
+    let Waves {
+        one,
+        waves: [[c1, s1], [c2, s2], [c3, s3]],
+    } = waves(m, d);
     let [k0, kc, ks, kc2, ks2] = product(&height, &jacobian);
     let half = N::HALF;
     // The integrals of h J, and of its products with cos v and sin v.
@@ -91,14 +94,25 @@ fn round<N: Float>(
     [area, volume, at.x, at.y, at.z]
 }
 
-/// The integrals of 1, and of cos kv and sin kv for k = 1, 2, 3, between m - d and m + d.
-fn waves<N: Float>(m: N, d: N) -> (N, [[N; 2]; 3]) {
+/// Integrals over v.
+struct Waves<N: Float> {
+    /// The integral of 1.
+    one: N,
+    /// The integrals of cos kv and sin kv for k = 1, 2, 3.
+    waves: [[N; 2]; 3],
+}
+
+/// The integrals between m - d and m + d.
+fn waves<N: Float>(m: N, d: N) -> Waves<N> {
     let wave = |k: N| {
         let (sin, cos) = (k * m).sin_cos();
         let size = N::TWO * (k * d).sin() / k;
         [size * cos, size * sin]
     };
-    (N::TWO * d, [N::ONE, N::TWO, N::from_f64(3.0)].map(wave))
+    Waves {
+        one: N::TWO * d,
+        waves: [N::ONE, N::TWO, N::from_f64(3.0)].map(wave),
+    }
 }
 
 #[cfg(test)]

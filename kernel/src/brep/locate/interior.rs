@@ -31,6 +31,14 @@ const NEXT: f64 = 64.0;
 /// search.
 const LONG: f64 = (1 << 20) as f64;
 
+/// A path into a face.
+struct Way<N: Float = f64> {
+    /// The distance along it.
+    length: N,
+    /// The point there.
+    point: Point3<N>,
+}
+
 impl<N: Float> FaceLocator<'_, N> {
     /// A point inside the face, at least `away` from its boundary along a path. `None` for a face
     /// without a boundary, and if no path finds one.
@@ -40,22 +48,22 @@ impl<N: Float> FaceLocator<'_, N> {
             let arcs = self.arcs.all.iter().step_by(step).take(ARCS);
             arcs.map(move |arc| (arc, N::from_f64(part)))
         });
-        let mut best: Option<(N, Point3<N>)> = None;
-        for (length, point) in starts.flat_map(|(arc, part)| self.ways_from(arc, part)) {
-            if best.as_ref().is_none_or(|b| length.is_beyond(b.0)) {
-                best = Some((length, point));
+        let mut best: Option<Way<N>> = None;
+        for way in starts.flat_map(|(arc, part)| self.ways_from(arc, part)) {
+            let length = way.length;
+            if best.as_ref().is_none_or(|b| length.is_beyond(b.length)) {
+                best = Some(way);
             }
             // Usually the first one is.
             if length.is_beyond(N::from_f64(LONG) * self.resolution) {
                 break;
             }
         }
-        let (_, point) = best.filter(|b| b.0.is_beyond(away))?;
-        Some(point)
+        Some(best.filter(|b| b.length.is_beyond(away))?.point)
     }
 
-    /// The paths from a point of an arc into the face: the distance along each, and the point.
-    fn ways_from(&self, arc: &DirectedArc<'_, N>, part: N) -> Vec<(N, Point3<N>)> {
+    /// The paths from a point of an arc into the face.
+    fn ways_from(&self, arc: &DirectedArc<'_, N>, part: N) -> Vec<Way<N>> {
         let t = arc.range[0] + part * (arc.range[1] - arc.range[0]);
         let p = arc.curve.point(t);
         let tangent = arc.curve.tangent(t) * arc.sense.sign::<N>();
@@ -67,7 +75,8 @@ impl<N: Float> FaceLocator<'_, N> {
                 && let Some(length) = self.left_at(&walk)
             {
                 let length = N::from_f64(INSIDE) * length;
-                ways.push((length, walk.point(length)));
+                let point = walk.point(length);
+                ways.push(Way { length, point });
             }
         }
         ways

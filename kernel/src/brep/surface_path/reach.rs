@@ -23,6 +23,14 @@ struct SideOfTorus {
     side: f64,
 }
 
+/// A straight path from a point along a direction.
+#[derive(Clone, Copy, Debug)]
+struct StraightPath {
+    /// The half-space ahead of the start.
+    ahead: Above,
+    length: f64,
+}
+
 /// A region that contains a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
@@ -30,8 +38,8 @@ pub(super) struct Reach {
     plane: Above,
     half: Option<Above>,
     side_of_torus: Option<SideOfTorus>,
-    /// The start, direction and length of a straight path.
-    line: Option<(Above, f64)>,
+    /// A straight path.
+    line: Option<StraightPath>,
     /// The box of a straight path of finite length; otherwise unbounded.
     extent: Aabb,
 }
@@ -66,7 +74,8 @@ impl Above {
 impl Reach {
     /// The region of a path in the plane through its start with the given normal.
     pub fn new<N: Float>(
-        (start, normal): (&Point3<N>, &Vector3<N>),
+        start: &Point3<N>,
+        normal: &Vector3<N>,
         track: &Track<N>,
         branch: &Branch<N>,
         length: N,
@@ -88,7 +97,11 @@ impl Reach {
             Track::Line(d) => {
                 let ends = Aabb::new(start).hull(&Aabb::new(&(start + d * length)));
                 let extent = if length.is_finite() { ends } else { Aabb::ALL };
-                (Some((Above::new(start, d), length.above())), extent)
+                let path = StraightPath {
+                    ahead: Above::new(start, d),
+                    length: length.above(),
+                };
+                (Some(path), extent)
             }
             Track::Circle(..) => (None, Aabb::ALL),
         };
@@ -129,9 +142,9 @@ impl Reach {
         {
             return false;
         }
-        self.line.as_ref().is_none_or(|(along, length)| {
-            let [mid, half] = along.span(&b);
-            mid.reaches(-half - resolution) && (mid - half - resolution).is_at_most(*length)
+        self.line.as_ref().is_none_or(|path| {
+            let [mid, half] = path.ahead.span(&b);
+            mid.reaches(-half - resolution) && (mid - half - resolution).is_at_most(path.length)
         })
     }
 }

@@ -36,6 +36,15 @@ fn within<N: Float>(row: &[N; 5], order: usize, half: N) -> [N; 5] {
     })
 }
 
+/// The derivatives about the centre of a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct CellPartials<N: Float = f64> {
+    /// The value with its partial derivatives at the centre.
+    pub partials: Partials<N>,
+    /// Bounds of the third derivatives over the cell.
+    pub thirds: Thirds<N>,
+}
+
 impl<N: Float> BivariateTrigPoly<N> {
     /// Bounds of the rows' derivatives by the second angle.
     pub(crate) fn reaches(&self) -> Reaches<N> {
@@ -48,14 +57,13 @@ impl<N: Float> BivariateTrigPoly<N> {
         Reaches([0, 1, 2, 3, 4].map(of))
     }
 
-    /// The value with its partial derivatives at the centre of a cell, and bounds of the third
-    /// derivatives over the cell. `half` are half its sides.
+    /// The derivatives about the centre of a cell. `half` are half its sides.
     pub(crate) fn partials_about(
         &self,
         centre: [N; 2],
         half: [N; 2],
         reaches: &Reaches<N>,
-    ) -> (Partials<N>, Thirds<N>) {
+    ) -> CellPartials<N> {
         let [bx, by] = centre.map(basis);
         let (across, along) = (to_third(&bx), to_third(&by));
         let rows: [[N; 5]; 4] = std::array::from_fn(|order| within(&across[order], order, half[0]));
@@ -66,8 +74,10 @@ impl<N: Float> BivariateTrigPoly<N> {
             near.min(reaches.0[order][i])
         };
         let bound = |k: usize| (0..5).map(|i| rows[k][i] * row(3 - k, i)).sum();
-        let thirds = Thirds([0, 1, 2, 3].map(bound));
-        (partials(&self.0, &bx, &by), thirds)
+        CellPartials {
+            thirds: Thirds([0, 1, 2, 3].map(bound)),
+            partials: partials(&self.0, &bx, &by),
+        }
     }
 }
 
@@ -127,14 +137,14 @@ mod tests {
             for k in 0..20 {
                 let (cx, cy) = (0.3 * f64::from(k), 1.7 * f64::from(k) + 0.1);
                 let half = [half, 0.5 * half];
-                let (_, Thirds(bounds)) = f.partials_about([cx, cy], half, &reaches);
+                let Thirds(bounds) = f.partials_about([cx, cy], half, &reaches).thirds;
                 for (a, b) in [(-1.0, -1.0), (-1.0, 1.0), (0.3, -0.7), (1.0, 1.0)] {
                     let there = thirds(cx + a * half[0], cy + b * half[1]);
                     for (bound, value) in bounds.iter().zip(there) {
                         assert!(value.abs() <= bound * (1.0 + 1e-12) + 1e-12);
                     }
                 }
-                let (_, Thirds(least)) = f.partials_about([cx, cy], [0.0; 2], &reaches);
+                let Thirds(least) = f.partials_about([cx, cy], [0.0; 2], &reaches).thirds;
                 assert!(i < 2 || bounds.iter().zip(least).all(|(b, l)| *b <= l + 0.5));
             }
         }

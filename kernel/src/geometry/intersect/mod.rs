@@ -14,7 +14,8 @@ use super::curve::Curve;
 use super::region_of_interest::RegionOfInterest;
 use super::surface::{Cone, Surface, SurfaceKind};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
-use super::tracer::Unresolved;
+use super::trace::BranchPosition;
+use super::unresolved::Unresolved;
 use super::vector::rounded as place;
 use crate::geometry::sense::Sense;
 use crate::geometry::vector::Length;
@@ -44,8 +45,8 @@ pub struct Branch<N: Float = f64> {
 pub struct Node<N: Float = f64> {
     /// The location.
     pub point: Point3<N>,
-    /// The branches through it, as (index of the branch, parameter); empty for an isolated point.
-    pub on: Vec<(usize, N)>,
+    /// The branches through it; empty for an isolated point.
+    pub on: Vec<BranchPosition<N>>,
 }
 
 /// The intersection of two surfaces.
@@ -103,9 +104,13 @@ impl<N: Float> SurfaceIntersection<N> {
     /// Adds a singular point, with its parameter on each branch through it.
     fn cross_at(&mut self, point: Point3<N>, predicates: &Predicates) {
         let on = self.branches.iter().enumerate();
-        let on = on.map(|(i, branch)| (i, branch.curve.parameter(&point)));
-        let passed = |&(i, t): &(usize, N)| {
-            predicates.within((self.branches[i].curve.point(t) - point).length())
+        let on = on.map(|(i, branch)| BranchPosition {
+            branch: i,
+            t: branch.curve.parameter(&point),
+        });
+        let passed = |on: &BranchPosition<N>| {
+            let there = self.branches[on.branch].curve.point(on.t);
+            predicates.within((there - point).length())
         };
         let on = on.filter(passed).collect();
         self.nodes.push(Node { point, on });

@@ -5,6 +5,7 @@ use crate::geometry::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cone, Cylinder, Plane, Sphere};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
+use crate::geometry::trace::BranchPosition;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
@@ -223,7 +224,10 @@ fn plane_through_apex<N: Float>(
         if let Some([_, end]) = curve.range_within(&pair.extent.centre, pair.extent.radius)
             && end > N::ZERO
         {
-            let on = (meeting.branches.len(), N::ZERO);
+            let on = BranchPosition {
+                branch: meeting.branches.len(),
+                t: N::ZERO,
+            };
             meeting.branches.push(Branch {
                 curve,
                 range: [N::ZERO, end],

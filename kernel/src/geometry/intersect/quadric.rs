@@ -8,9 +8,9 @@ use crate::geometry::frame::Frame;
 use crate::geometry::quadric_curve::Ruled;
 use crate::geometry::surface::{Cone, Cylinder, Surface};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
+use crate::geometry::trace::BranchPosition;
 use crate::geometry::vector::Length;
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::predicates::{Predicates, Side};
@@ -150,7 +150,10 @@ fn common_apex<N: Float>(
         if let Some([_, end]) = curve.range_within(&extent.centre, extent.radius)
             && end > N::ZERO
         {
-            meeting.nodes[0].on.push((meeting.branches.len(), N::ZERO));
+            meeting.nodes[0].on.push(BranchPosition {
+                branch: meeting.branches.len(),
+                t: N::ZERO,
+            });
             meeting.branches.push(Branch {
                 curve,
                 range: [N::ZERO, end],

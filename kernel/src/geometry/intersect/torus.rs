@@ -8,7 +8,7 @@ use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::curve_surface::lies_on;
 use crate::geometry::surface::{Plane, Surface, Torus};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
-use crate::geometry::trace::trace;
+use crate::geometry::trace::{BranchPosition, trace};
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
@@ -85,6 +85,13 @@ fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N 
     s.polynomial(p) / slope
 }
 
+/// A part of a traced branch that is kept.
+struct BranchPart<N: Float = f64> {
+    /// The index of the branch of the intersection.
+    branch: usize,
+    range: [N; 2],
+}
+
 fn traced<N: Float>(
     t: &Torus<N>,
     other: &Surface<N>,
@@ -98,12 +105,13 @@ fn traced<N: Float>(
         predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
     }
     // The form vanishes on both nappes of a cone. Each branch is clipped to the cone's own nappe.
-    let mut parts: Vec<Vec<(usize, [N; 2])>> = Vec::new();
+    let mut parts: Vec<Vec<BranchPart<N>>> = Vec::new();
     let mut singular = traced.singular;
     for (b, branch) in traced.branches.into_iter().enumerate() {
         let toric = Curve::Toric(Box::new(branch));
         let passes = singular.iter_mut().flat_map(|s| &mut s.on);
-        let mut passes: Vec<&mut N> = passes.filter(|on| on.0 == b).map(|on| &mut on.1).collect();
+        let passes = passes.filter(|on| on.branch == b).map(|on| &mut on.t);
+        let mut passes: Vec<&mut N> = passes.collect();
         let curve = match circle_of(&toric, t, other, predicates) {
             Some(circle) => {
                 for at in &mut passes {
@@ -118,7 +126,10 @@ fn traced<N: Float>(
         let mut kept = Vec::new();
         for range in nappe_parts(&curve, whole, other, predicates.resolution()) {
             let range = range.map(|end| at_pass(&curve, end, &passes, predicates));
-            kept.push((meeting.branches.len(), range));
+            kept.push(BranchPart {
+                branch: meeting.branches.len(),
+                range,
+            });
             let (curve, closed) = (curve.clone(), range == whole);
             meeting.branches.push(Branch {
                 curve,
@@ -135,13 +146,15 @@ fn traced<N: Float>(
             continue;
         }
         let mut on = Vec::new();
-        for (b, at) in s.on {
-            for &(i, [lo, hi]) in &parts[b] {
+        for BranchPosition { branch, t: at } in s.on {
+            for part in &parts[branch] {
+                let (branch, [lo, hi]) = (part.branch, part.range);
                 // A part may extend beyond the period in which it starts.
-                let cycle = meeting.branches[i].curve.period().unwrap_or(N::ZERO);
-                let whole = meeting.branches[i].closed;
+                let cycle = meeting.branches[branch].curve.period().unwrap_or(N::ZERO);
+                let whole = meeting.branches[branch].closed;
                 let passes = [at, at + cycle].into_iter().take(2 - usize::from(whole));
-                on.extend(passes.filter(|&t| t >= lo && t <= hi).map(|t| (i, t)));
+                let passes = passes.filter(|&t| t >= lo && t <= hi);
+                on.extend(passes.map(|t| BranchPosition { branch, t }));
             }
         }
         meeting.nodes.push(Node { point, on });
@@ -225,14 +238,14 @@ fn coaxial<N: Float>(
             let apex = Vector2::new(N::ZERO, up);
             let d = Vector2::new(c.sin, sign * c.cos);
             let mut points = profile.line(&apex, &d);
-            points.retain(|(p, _)| (p - apex).dot(&d) > N::ZERO);
+            points.retain(|p| (p.at - apex).dot(&d) > N::ZERO);
             points
         }
         Surface::Sphere(s) => profile.circle(&Vector2::new(N::ZERO, up), s.radius),
         Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
     };
     let mut meeting = SurfaceIntersection::nothing();
-    for (p, tangent) in points {
+    for ProfilePoint { at: p, tangent } in points {
         if p.x > N::ZERO {
             meeting.add(Curve::Circle(parallel(t, p.y, p.x)), tangent, pair.extent);
         }
@@ -249,6 +262,25 @@ struct Profile<'a, N: Float = f64> {
     predicates: &'a Predicates,
 }
 
+/// A common point of two profiles.
+struct ProfilePoint<N: Float = f64> {
+    at: Vector2<N>,
+    /// Whether the profiles are tangent there.
+    tangent: bool,
+}
+
+impl<N: Float> ProfilePoint<N> {
+    fn simple(at: Vector2<N>) -> Self {
+        let tangent = false;
+        Self { at, tangent }
+    }
+
+    fn tangent(at: Vector2<N>) -> Self {
+        let tangent = true;
+        Self { at, tangent }
+    }
+}
+
 impl<N: Float> Profile<'_, N> {
     fn side(&self, question: &'static str, relation: PairMeasure, at: &Vector2<N>) -> Side {
         let f = self.pair.a.surface.frame();
@@ -257,9 +289,8 @@ impl<N: Float> Profile<'_, N> {
             .classify(question, self.pair.how(relation), place(&at))
     }
 
-    /// The intersections of the circle with the line of a plane, a cylinder or a cone, and whether
-    /// it is tangent.
-    fn line(&self, o: &Vector2<N>, d: &Vector2<N>) -> Vec<(Vector2<N>, bool)> {
+    /// The intersections of the circle with the line of a plane, a cylinder or a cone.
+    fn line(&self, o: &Vector2<N>, d: &Vector2<N>) -> Vec<ProfilePoint<N>> {
         let foot = o + d * (self.tube - o).dot(d);
         let (h, r) = ((self.tube - foot).length(), self.radius);
         match self.side(
@@ -268,17 +299,19 @@ impl<N: Float> Profile<'_, N> {
             &foot,
         ) {
             Side::Outside => Vec::new(),
-            Side::On => vec![(foot, true)],
+            Side::On => vec![ProfilePoint::tangent(foot)],
             Side::Inside => {
                 let half = ((r - h) * (r + h)).sqrt();
-                vec![(foot - d * half, false), (foot + d * half, false)]
+                vec![
+                    ProfilePoint::simple(foot - d * half),
+                    ProfilePoint::simple(foot + d * half),
+                ]
             }
         }
     }
 
-    /// The intersections of the circle with that of a sphere or another tube, and whether they are
-    /// tangent.
-    fn circle(&self, a: &Vector2<N>, r: N) -> Vec<(Vector2<N>, bool)> {
+    /// The intersections of the circle with that of a sphere or another tube.
+    fn circle(&self, a: &Vector2<N>, r: N) -> Vec<ProfilePoint<N>> {
         let away = self.tube - a;
         let (d, q) = (away.length(), self.radius);
         let concentric = self.side("centre on centre", PairMeasure::BetweenTubes, &self.tube);
@@ -289,13 +322,16 @@ impl<N: Float> Profile<'_, N> {
         let foot = a + axis * (N::HALF * (d + (r - q) * (r + q) / d));
         let side = |gap| self.side("circle on circle of a profile", gap, &foot);
         match (side(PairMeasure::NextToTube), side(PairMeasure::InTube)) {
-            (Side::On, _) => vec![(a + axis * r, true)],
-            (_, Side::On) => vec![(a + axis * r.copysign(r - q), true)],
+            (Side::On, _) => vec![ProfilePoint::tangent(a + axis * r)],
+            (_, Side::On) => vec![ProfilePoint::tangent(a + axis * r.copysign(r - q))],
             (Side::Inside, Side::Inside) => {
                 let area = (r + q - d) * (d + (r - q)) * (d - (r - q)) * (d + r + q);
                 let half =
                     Vector2::new(-axis.y, axis.x) * (area.max(N::ZERO).sqrt() / (N::TWO * d));
-                vec![(foot - half, false), (foot + half, false)]
+                vec![
+                    ProfilePoint::simple(foot - half),
+                    ProfilePoint::simple(foot + half),
+                ]
             }
             _ => Vec::new(),
         }

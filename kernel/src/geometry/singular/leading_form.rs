@@ -15,13 +15,12 @@
 //! as G and G_κ have no common zero; there every zero of G belongs to a branch that continues to σ
 //! = 0.
 
-use super::{BranchTangent, SingularPoint, ZONE};
+use super::{BranchTangent, DegeneratePoint, SingularPoint, ZONE};
 use crate::geometry::bivariate_trig_poly::{BivariateTrigPoly, Partials};
 use crate::geometry::blow_up::{Chart, DEGREE, Taylor, Weights, sheared, taylor};
 use crate::geometry::torus_parameter::TorusParameter;
-use crate::geometry::tracer::{Tracer, deepest, near};
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::geometry::tracer::{RoundedForm, Tracer, deepest, near};
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::roots::{RootKind, Roots, isolate};
@@ -54,11 +53,11 @@ pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option
     fold(tracer, angles, 2, directions)
 }
 
-/// The degenerate point close to `start`, and the distance up to which F is within the resolution.
+/// The degenerate point close to `start`.
 pub(super) fn degenerate<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
-) -> Option<(SingularPoint<N>, N)> {
+) -> Option<DegeneratePoint<N>> {
     let flat = || ORDERS.into_iter().find_map(|k| rank_one(tracer, start, k));
     let crossing = || FORMS.into_iter().find_map(|n| multiple(tracer, start, n));
     flat().or_else(crossing)
@@ -112,7 +111,7 @@ impl Kind {
     /// rejected.
     fn near<N: Float>(self, tracer: &Tracer<'_, N>, start: [N; 2]) -> Option<[N; 2]> {
         let exactly = |p| self.step(tracer.form, p);
-        let Some((form, slop)) = tracer.f64_form() else {
+        let Some(RoundedForm { form, slop }) = tracer.f64_form() else {
             return walk(start, STEPS, exactly);
         };
         let rough = walk(start.map(N::rounded), STEPS, |p| self.step(form, p))?;
@@ -144,7 +143,7 @@ fn multiple<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
     n: usize,
-) -> Option<(SingularPoint<N>, N)> {
+) -> Option<DegeneratePoint<N>> {
     let p = Kind::Multiple(n).near(tracer, start)?;
     let k = taylor(tracer.form, p, TorusParameter::Around);
     let reach = terms_vanish(&k, n, tracer.resolution)?;
@@ -153,7 +152,7 @@ fn multiple<N: Float>(
     }
     let directions = roots_of_form(&k, n)?;
     let point = fold(tracer, p, n, directions)?;
-    Some((point, reach))
+    Some(DegeneratePoint { point, reach })
 }
 
 /// The size of the terms of a degree.
@@ -357,7 +356,7 @@ fn rank_one<N: Float>(
     tracer: &Tracer<'_, N>,
     start: [N; 2],
     k: usize,
-) -> Option<(SingularPoint<N>, N)> {
+) -> Option<DegeneratePoint<N>> {
     let p = Kind::RankOne(k).near(tracer, start)?;
     let sheet = Sheet::at(tracer.form, p);
     let reach = sheet.vanishes(k, tracer.resolution)?;
@@ -365,7 +364,8 @@ fn rank_one<N: Float>(
         && reach < N::from_f64(ZONE)
         && N::from_f64(LEAD) * sheet.along[k + 1].abs() * reach <= sheet.along[k].abs();
     leads.then_some(())?;
-    Some((rank_one_branches(tracer, p, &sheet, k)?, reach))
+    let point = rank_one_branches(tracer, p, &sheet, k)?;
+    Some(DegeneratePoint { point, reach })
 }
 
 /// The branches through a point of rank one; `None` if no zone is unambiguous.

@@ -37,7 +37,7 @@ fn kinds(traced: &Traced) -> (usize, Vec<(usize, usize)>) {
     let kind = |s: &crate::geometry::trace::Singular| {
         let turns =
             s.on.iter()
-                .filter(|on| traced.branches[on.0].turns_back(on.1));
+                .filter(|on| traced.branches[on.branch].turns_back(on.t));
         (s.on.len(), turns.count())
     };
     (
@@ -110,8 +110,8 @@ fn a_cone_of_the_curvature_of_the_tube_meets_it_in_three_branches() {
     };
     assert!(apart(&point.angles) < 1e-9);
     // u is -2 dθ and v is -dφ: the slopes dφ/dθ are zero, infinite, and from u/4 = -v/(2 l).
-    let direction = |&(b, t): &(usize, f64)| {
-        let [theta, phi] = traced.branches[b].angles(t + 1e-9);
+    let direction = |on: &crate::geometry::trace::BranchPosition| {
+        let [theta, phi] = traced.branches[on.branch].angles(on.t + 1e-9);
         phi.d.atan2(theta.d)
     };
     let directions: Vec<f64> = point.on.iter().map(direction).collect();

@@ -1,17 +1,17 @@
 //! Joins the pieces of the curve in the cells to closed branches, through the roots on the cells'
 //! sides and through the singular points.
 
-use super::{Leaf, Singular, Traced};
+use super::{BranchPosition, Leaf, Singular, Traced};
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::blow_up::Chart;
 use crate::geometry::singular::{BranchTangent, SingularPoint};
 use crate::geometry::surface::Torus;
 use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
-use crate::geometry::torus_grid::{Cell, Layout, grid, lines};
+use crate::geometry::torus_grid::{Cell, Layout, Zone, grid, lines};
 use crate::geometry::torus_parameter::TorusParameter;
-use crate::geometry::tracer::{Tracer, Unresolved};
-use crate::number::analytic::Analytic;
-use crate::number::float::Float;
+use crate::geometry::tracer::Tracer;
+use crate::geometry::unresolved::Unresolved;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,12 +22,31 @@ type RootId = usize;
 #[derive(Default)]
 struct Sides<N: Float = f64> {
     roots: Vec<[N; 2]>,
-    known: HashMap<(usize, Name, Name, Name), Vec<RootId>>,
+    known: HashMap<SideId, Vec<RootId>>,
 }
 
-/// The zones along one angle, given by its index, as (centre, size). Zones that overlap along the
-/// angle share their lines and have the size of the smallest.
-fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, N)> {
+/// The identity of a side.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct SideId {
+    /// The index of the angle that is fixed.
+    fixed: usize,
+    /// The line on which it lies.
+    line: Name,
+    /// The corners at both ends.
+    ends: [Name; 2],
+}
+
+/// A root on a side of a cell.
+#[derive(Clone, Copy)]
+struct CellRoot<N: Float = f64> {
+    id: RootId,
+    /// Its angles, close to the cell.
+    angles: [N; 2],
+}
+
+/// The zones along one angle, given by its index. Zones that overlap along the angle share their
+/// lines and have the size of the smallest.
+fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<Zone<N>> {
     let size = |p: &SingularPoint<N>| {
         let over = |q: &&SingularPoint<N>| wrap(p.angles[k] - q.angles[k]).abs() <= p.zone + q.zone;
         let sizes = points.iter().filter(over).map(|q| q.zone);
@@ -35,7 +54,10 @@ fn zones<N: Float>(points: &[SingularPoint<N>], k: usize, shrink: N) -> Vec<(N, 
     };
     points
         .iter()
-        .map(|p| (p.angles[k], size(p) * shrink))
+        .map(|p| Zone {
+            centre: p.angles[k],
+            size: size(p) * shrink,
+        })
         .collect()
 }
 
@@ -54,11 +76,15 @@ struct Piece<N: Float = f64> {
     segment: TorusCurveSegment<N>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Root(RootId),
-    /// The passage through a singular point: (point, index of its branch).
-    Pass(usize, usize),
+    /// The passage through a singular point.
+    Pass {
+        point: usize,
+        /// The index of the point's branch.
+        branch: usize,
+    },
 }
 
 impl<N: Float> Tracer<'_, N> {
@@ -73,10 +99,8 @@ impl<N: Float> Tracer<'_, N> {
         let cells = grid(&xs, &ys);
         let home = |c: &Cell<N>| {
             let centre = c.centre();
-            let holds = |k: usize, i: usize| {
-                let (at, size) = zones[k][i];
-                wrap(centre[k] - at).abs() <= N::from_f64(0.9) * size
-            };
+            let part = N::from_f64(0.9);
+            let holds = |k: usize, i: usize| zones[k][i].contains(centre[k], part);
             (0..points.len()).find(|&i| holds(0, i) && holds(1, i))
         };
         let (own, free): (Vec<Cell<N>>, Vec<Cell<N>>) =
@@ -103,14 +127,14 @@ impl<N: Float> Tracer<'_, N> {
         chain(torus, self.form, points, pieces)
     }
 
-    /// The roots around a cell, as (id, angles close to the cell).
+    /// The roots around a cell.
     fn around(
         &self,
         cell: &Cell<N>,
         corners: &Corners<N>,
         origin: [N; 2],
         sides: &mut Sides<N>,
-    ) -> Result<Vec<(RootId, [N; 2])>, Unresolved> {
+    ) -> Result<Vec<CellRoot<N>>, Unresolved> {
         let mut all = Vec::new();
         for fixed in [0, 1] {
             let other = 1 - fixed;
@@ -118,7 +142,11 @@ impl<N: Float> Tracer<'_, N> {
                 let name = key(at, origin[fixed]);
                 let marks = corners.between(fixed, name, cell.lo[other], cell.hi[other]);
                 for pair in marks.windows(2) {
-                    let id = (fixed, name, pair[0].bits(), pair[1].bits());
+                    let id = SideId {
+                        fixed,
+                        line: name,
+                        ends: [pair[0].bits(), pair[1].bits()],
+                    };
                     if !sides.known.contains_key(&id) {
                         let roots = self
                             .roots_on(fixed, at, pair[0], pair[1])
@@ -130,10 +158,10 @@ impl<N: Float> Tracer<'_, N> {
                         let ids = ids.collect();
                         sides.known.insert(id, ids);
                     }
-                    for &root in &sides.known[&id] {
-                        let mut p = sides.roots[root];
-                        p[fixed] = at;
-                        all.push((root, p));
+                    for &id in &sides.known[&id] {
+                        let mut angles = sides.roots[id];
+                        angles[fixed] = at;
+                        all.push(CellRoot { id, angles });
                     }
                 }
             }
@@ -145,16 +173,16 @@ impl<N: Float> Tracer<'_, N> {
     fn join(
         &self,
         &Leaf { cell, axis, steep }: &Leaf<N>,
-        mut roots: Vec<(RootId, [N; 2])>,
+        mut roots: Vec<CellRoot<N>>,
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let k = if axis == TorusParameter::Around { 0 } else { 1 };
-        roots.sort_by(|a, b| a.1[k].total_cmp(&b.1[k]));
+        roots.sort_by(|a, b| a.angles[k].total_cmp(&b.angles[k]));
         if roots.len() % 2 == 1 {
             return Err(Unresolved::at(cell.centre()));
         }
         for pair in roots.chunks(2) {
-            let (p, q) = (pair[0].1, pair[1].1);
+            let (p, q) = (pair[0].angles, pair[1].angles);
             let slope = |p: [N; 2]| {
                 let g = self.form.partials(p[0], p[1]);
                 if k == 0 { -g.x / g.y } else { -g.y / g.x }
@@ -174,7 +202,7 @@ impl<N: Float> Tracer<'_, N> {
                 return Err(Unresolved::at(cell.centre()));
             }
             pieces.push(Piece {
-                ends: [End::Root(pair[0].0), End::Root(pair[1].0)],
+                ends: [End::Root(pair[0].id), End::Root(pair[1].id)],
                 segment,
             });
         }
@@ -186,14 +214,18 @@ impl<N: Float> Tracer<'_, N> {
         &self,
         points: &[SingularPoint<N>],
         index: usize,
-        roots: &[(RootId, [N; 2])],
+        roots: &[CellRoot<N>],
         pieces: &mut Vec<Piece<N>>,
     ) -> Result<(), Unresolved> {
         let point = &points[index];
         let unresolved = Unresolved::at(point.angles);
         let first: usize = points[..index].iter().map(|p| p.passes.len()).sum();
         let mut used = vec![[false; 2]; point.passes.len()];
-        for (root, p) in roots {
+        for CellRoot {
+            id: root,
+            angles: p,
+        } in roots
+        {
             let away = [0, 1].map(|k| wrap(p[k] - point.angles[k]));
             let all = point.passes.iter().enumerate();
             let (b, end) = all
@@ -206,7 +238,13 @@ impl<N: Float> Tracer<'_, N> {
             }
             let segment = node_segment(first + b, &point.passes[b], &end).ok_or(unresolved)?;
             pieces.push(Piece {
-                ends: [End::Pass(index, b), End::Root(*root)],
+                ends: [
+                    End::Pass {
+                        point: index,
+                        branch: b,
+                    },
+                    End::Root(*root),
+                ],
                 segment,
             });
         }
@@ -325,6 +363,56 @@ impl<N: Float> Corners<N> {
     }
 }
 
+/// The two pieces at every end.
+fn joints<N: Float>(pieces: &[Piece<N>]) -> Result<BTreeMap<End, [usize; 2]>, Unresolved> {
+    let mut at: BTreeMap<End, Vec<usize>> = BTreeMap::new();
+    for (i, p) in pieces.iter().enumerate() {
+        for end in p.ends {
+            at.entry(end).or_default().push(i);
+        }
+    }
+    let pair = |(end, list): (End, Vec<usize>)| match list[..] {
+        [a, b] => Ok((end, [a, b])),
+        _ => {
+            let s = &pieces[list[0]].segment;
+            Err(Unresolved::at([s.from, s.ends[0]]))
+        }
+    };
+    at.into_iter().map(pair).collect()
+}
+
+/// A piece of a branch in the direction of the branch.
+struct Link<N: Float = f64> {
+    /// Where it begins.
+    entry: End,
+    segment: TorusCurveSegment<N>,
+}
+
+/// The closed branch that begins with a piece; its pieces are marked as used.
+fn links<N: Float>(
+    pieces: &[Piece<N>],
+    joints: &BTreeMap<End, [usize; 2]>,
+    start: usize,
+    used: &mut [bool],
+) -> Vec<Link<N>> {
+    let mut links = Vec::new();
+    let (mut here, mut entry) = (start, pieces[start].ends[0]);
+    while !used[here] {
+        used[here] = true;
+        let p = &pieces[here];
+        let forward = p.ends[0] == entry;
+        let segment = match forward {
+            true => p.segment,
+            false => p.segment.reversed(),
+        };
+        links.push(Link { entry, segment });
+        entry = if forward { p.ends[1] } else { p.ends[0] };
+        let pair = joints[&entry];
+        here = if pair[0] == here { pair[1] } else { pair[0] };
+    }
+    links
+}
+
 /// Pieces joined to closed branches.
 fn chain<N: Float>(
     torus: &Torus<N>,
@@ -332,20 +420,7 @@ fn chain<N: Float>(
     points: &[SingularPoint<N>],
     pieces: Vec<Piece<N>>,
 ) -> Result<Traced<N>, Unresolved> {
-    let mut at: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
-    let name = |e: &End| match *e {
-        End::Root(r) => (0, r, 0),
-        End::Pass(p, b) => (1, p, b),
-    };
-    for (i, p) in pieces.iter().enumerate() {
-        for e in &p.ends {
-            at.entry(name(e)).or_default().push(i);
-        }
-    }
-    if let Some((_, list)) = at.iter().find(|(_, l)| l.len() != 2) {
-        let s = &pieces[list[0]].segment;
-        return Err(Unresolved::at([s.from, s.ends[0]]));
-    }
+    let joints = joints(&pieces)?;
     let mut singular: Vec<Singular<N>> = points
         .iter()
         .map(|p| Singular {
@@ -361,31 +436,20 @@ fn chain<N: Float>(
         if used[start] {
             continue;
         }
-        let mut segments = Vec::new();
-        let (mut here, mut entry) = (start, pieces[start].ends[0]);
-        while !used[here] {
-            used[here] = true;
-            let p = &pieces[here];
-            let forward = p.ends[0] == entry;
-            if let End::Pass(s, _) = entry {
-                singular[s]
-                    .on
-                    .push((branches.len(), N::from_f64(segments.len() as f64)));
+        let links = links(&pieces, &joints, start, &mut used);
+        for (index, link) in links.iter().enumerate() {
+            if let End::Pass { point, .. } = link.entry {
+                singular[point].on.push(BranchPosition {
+                    branch: branches.len(),
+                    t: N::from_f64(index as f64),
+                });
             }
-            segments.push(if forward {
-                p.segment
-            } else {
-                p.segment.reversed()
-            });
-            entry = if forward { p.ends[1] } else { p.ends[0] };
-            let pair = &at[&name(&entry)];
-            here = if pair[0] == here { pair[1] } else { pair[0] };
         }
         branches.push(TorusCurve {
             torus: *torus,
             form: form.clone(),
             charts: charts.clone(),
-            segments,
+            segments: links.into_iter().map(|link| link.segment).collect(),
             closed: true,
         });
     }

@@ -8,8 +8,6 @@
 
 mod join;
 
-pub use super::tracer::Unresolved;
-
 use super::bivariate_trig_poly::BivariateTrigPoly;
 use super::singular::{Critical, singular_points};
 use super::surface::Torus;
@@ -18,6 +16,7 @@ use super::torus_grid::{Cell, Layout};
 use super::torus_parameter::TorusParameter;
 use super::tracer::{Bounds, Tracer, deepest};
 use super::trigonometric::Trigonometric;
+use super::unresolved::Unresolved;
 use crate::number::float::Float;
 use crate::number::roots::{RootKind, Roots, isolate};
 
@@ -27,8 +26,17 @@ use crate::number::roots::{RootKind, Roots, isolate};
 pub struct Singular<N: Float = f64> {
     /// (θ, φ).
     pub angles: [N; 2],
-    /// The branches through it, as (index of the branch, parameter); empty for an isolated point.
-    pub on: Vec<(usize, N)>,
+    /// The branches through it; empty for an isolated point.
+    pub on: Vec<BranchPosition<N>>,
+}
+
+/// A point of a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BranchPosition<N: Float = f64> {
+    /// The index of the branch.
+    pub branch: usize,
+    /// The parameter.
+    pub t: N,
 }
 
 /// The zero set of F.

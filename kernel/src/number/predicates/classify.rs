@@ -42,20 +42,41 @@ fn side_of<N: PartialOrd>(lo: N, hi: N, resolution: N, below: N) -> Option<Side>
 
 /// The side of a distance within the resolution: `On` only if it is zero, where that can be
 /// determined.
-fn proven_side(distance: &impl CertifiedDistance) -> (Side, Effort) {
+fn proven_side(distance: &impl CertifiedDistance) -> SideByEffort {
     let Some(bits) = distance.separation() else {
-        return (Side::On, Effort::Construction);
+        return SideByEffort::new(Side::On, Effort::Construction);
     };
     if bits > PROVABLE {
-        return (Side::On, Effort::Assumption);
+        return SideByEffort::new(Side::On, Effort::Assumption);
     }
     let bounds = distance.refined(bits + GUARD);
     match bounds.as_ref().and_then(RationalInterval::ends) {
-        Some([lo, _]) if *lo > Rational::ZERO => (Side::Outside, Effort::MoreBits),
-        Some([_, hi]) if *hi < Rational::ZERO => (Side::Inside, Effort::MoreBits),
-        Some([lo, hi]) if is_below(&(hi - lo), bits) => (Side::On, Effort::Proof),
-        _ => (Side::On, Effort::Assumption),
+        Some([lo, _]) if *lo > Rational::ZERO => SideByEffort::new(Side::Outside, Effort::MoreBits),
+        Some([_, hi]) if *hi < Rational::ZERO => SideByEffort::new(Side::Inside, Effort::MoreBits),
+        Some([lo, hi]) if is_below(&(hi - lo), bits) => SideByEffort::new(Side::On, Effort::Proof),
+        _ => SideByEffort::new(Side::On, Effort::Assumption),
     }
+}
+
+/// A side, and what determined it.
+struct SideByEffort {
+    side: Side,
+    effort: Effort,
+}
+
+impl SideByEffort {
+    fn new(side: Side, effort: Effort) -> Self {
+        Self { side, effort }
+    }
+}
+
+/// A decision that is counted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// The side.
+    pub side: Side,
+    /// The close call, if it is one.
+    pub call: Option<CloseCall>,
 }
 
 /// Whether a non-negative number is less than 2^-`bits`.
@@ -118,7 +139,7 @@ impl Predicates {
         distance: impl CertifiedDistance,
         place: [f64; 3],
     ) -> Side {
-        let (side, call) = self.decide(question, distance, place);
+        let Decision { side, call } = self.decide(question, distance, place);
         call.into_iter().for_each(|call| self.list(call));
         side
     }
@@ -131,7 +152,7 @@ impl Predicates {
         distance: impl CertifiedDistance,
         place: [f64; 3],
     ) -> Side {
-        let (side, call) = self.decide(question, distance, place);
+        let Decision { side, call } = self.decide(question, distance, place);
         let local = |call| CloseCall {
             local: true,
             ..call
@@ -140,26 +161,26 @@ impl Predicates {
         side
     }
 
-    /// The side, and the close call if it is one. The decision is counted, but the close call is
-    /// not listed: the caller determines whether anything depends on it.
+    /// Decides without listing. The decision is counted, but a close call is not listed: the caller
+    /// determines whether anything depends on it.
     pub fn decide(
         &self,
         question: &'static str,
         distance: impl CertifiedDistance,
         place: [f64; 3],
-    ) -> (Side, Option<CloseCall>) {
+    ) -> Decision {
         let range = distance.range();
-        let (mut side, mut effort) =
-            match side_of(range.lo, range.hi, self.resolution, -self.resolution) {
-                Some(side) => (side, Effort::Filter),
-                None => (self.refined_side(&distance), Effort::MoreBits),
-            };
-        if side == Side::On && self.is_exact() {
-            (side, effort) = proven_side(&distance);
-            if side != Side::On {
+        let mut found = match side_of(range.lo, range.hi, self.resolution, -self.resolution) {
+            Some(side) => SideByEffort::new(side, Effort::Filter),
+            None => SideByEffort::new(self.refined_side(&distance), Effort::MoreBits),
+        };
+        if found.side == Side::On && self.is_exact() {
+            found = proven_side(&distance);
+            if found.side != Side::On {
                 self.record_unproven(question, place, range.mid());
             }
         }
+        let SideByEffort { side, effort } = found;
         self.count(side, effort);
         let distance = range.mid();
         let size = distance.abs();
@@ -170,7 +191,7 @@ impl Predicates {
             distance,
             local: false,
         });
-        (side, call)
+        Decision { side, call }
     }
 
     /// Lists a close call.

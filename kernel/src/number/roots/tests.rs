@@ -15,7 +15,7 @@ fn k(x: f64) -> Jet<Interval> {
 
 fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
     match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11) {
-        Roots::At { misses, .. } => misses.iter().map(|m| m.1).collect(),
+        Roots::At { misses, .. } => misses.iter().map(|m| m.value).collect(),
         Roots::Everywhere => panic!("everywhere"),
     }
 }

@@ -69,7 +69,10 @@ fn evidence(seen: &Evaluation, taken: &Evaluation, pose: &Isometry3<f64>) -> Sha
         .collect();
     let all: Vec<PointToLine> = features.iter().flat_map(|f| f.1.clone()).collect();
     let pose = refine(&CAMERA, pose, &all, 64.0, 20).unwrap().pose;
-    let features = features.iter().map(|(s, p)| (*s, p.as_slice()));
+    let features = features.iter().map(|(source, pulls)| FittedFeature {
+        source: *source,
+        pulls,
+    });
     ShapeEvidence::from_edges(&taken, &CAMERA, &pose, features)
 }
 

@@ -17,8 +17,15 @@ pub enum EntropyError {
 /// A code, by the sixteen bits that begin with it.
 #[derive(Clone)]
 pub struct Huffman {
-    /// Length, which is 0 where there is no code, and symbol.
-    codes: Vec<(u8, u8)>,
+    codes: Vec<HuffmanCode>,
+}
+
+/// The code of a symbol.
+#[derive(Clone, Copy)]
+struct HuffmanCode {
+    /// The number of bits; 0 where there is no code.
+    length: u8,
+    symbol: u8,
 }
 
 impl std::fmt::Debug for Huffman {
@@ -36,11 +43,15 @@ impl Huffman {
         for (length, &count) in (1..).zip(counts) {
             for &symbol in left.by_ref().take(usize::from(count)) {
                 let end = codes.len() + (1 << (16 - length));
-                codes.resize(end, (length, symbol));
+                codes.resize(end, HuffmanCode { length, symbol });
             }
         }
         let fits = codes.len() <= 1 << 16;
-        codes.resize(1 << 16, (0, 0));
+        let none = HuffmanCode {
+            length: 0,
+            symbol: 0,
+        };
+        codes.resize(1 << 16, none);
         fits.then_some(Self { codes })
     }
 }
@@ -111,7 +122,7 @@ impl<'b> Bits<'b> {
             // After the end the bits are ones, which are no code.
             None => ((self.held << 16 | 0xffff) >> self.count) as u16,
         };
-        let (length, symbol) = code.codes[usize::from(window)];
+        let HuffmanCode { length, symbol } = code.codes[usize::from(window)];
         let length = u32::from(length);
         match length {
             0 if self.count < 16 => Err(EntropyError::End),

@@ -11,7 +11,7 @@ mod scan;
 
 pub use decode::Opened;
 use entropy::{Huffman, word};
-use scan::{Component, SamplingFactors, Scan};
+use scan::{Component, SamplingFactors, Scan, ScanMember};
 
 /// Why a JPEG cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -179,8 +179,12 @@ impl Picture {
             .map(|[name, tables]| {
                 let of = |c: &Component| c.identifier == *name;
                 let component = self.components.iter().position(of)?;
-                let tables = [tables >> 4, tables & 15].map(usize::from);
-                tables.iter().all(|&t| t < 4).then_some((component, tables))
+                let [mean, other] = [tables >> 4, tables & 15].map(usize::from);
+                (mean < 4 && other < 4).then_some(ScanMember {
+                    component,
+                    mean,
+                    other,
+                })
             });
         let members = members.collect::<Option<Vec<_>>>()?;
         let [first, last, approximation] = word(rest, 2 * usize::from(count))?;

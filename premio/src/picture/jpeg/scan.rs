@@ -6,8 +6,8 @@ use super::{JpegError, Picture, malformed};
 /// A scan: its components, and the range of their coefficients.
 #[derive(Debug)]
 pub struct Scan {
-    /// Components, and their tables for means and for other coefficients.
-    pub members: Vec<(usize, [usize; 2])>,
+    /// The components.
+    pub members: Vec<ScanMember>,
     /// The first coefficient of a progressive scan.
     pub first: usize,
     /// The last one.
@@ -16,6 +16,17 @@ pub struct Scan {
     pub is_refinement: bool,
     /// The lowest bit that is in the scan.
     pub bit: u8,
+}
+
+/// A component of a scan.
+#[derive(Clone, Copy, Debug)]
+pub struct ScanMember {
+    /// The index of the component.
+    pub component: usize,
+    /// The table for means.
+    pub mean: usize,
+    /// The table for other coefficients.
+    pub other: usize,
 }
 
 /// The number of blocks of a component in a unit of several components.
@@ -93,8 +104,8 @@ impl Picture {
         let most = [0, 1].map(|i| self.components.iter().map(|c| sampling(c)[i]).max());
         let most = most.map(|most| most.unwrap_or(1));
         let along = |i: usize| match scan.members[..] {
-            [(one, _)] => {
-                let own = sampling(&self.components[one])[i];
+            [one] => {
+                let own = sampling(&self.components[one.component])[i];
                 (self.size[i] * own).div_ceil(most[i]).div_ceil(8)
             }
             _ => self.size[i].div_ceil(8 * most[i]),
@@ -116,13 +127,13 @@ impl Picture {
             ..
         } = self;
         let is_single = scan.members.len() == 1;
-        for &(component, [mean, other]) in &scan.members {
-            let component = &mut components[component];
+        for member in &scan.members {
+            let component = &mut components[member.component];
             let SamplingFactors { across, down } = component.sampling;
             let blocks = if is_single { 1 } else { across * down };
             for _ in 0..blocks {
-                let mean = || means[mean].as_ref().ok_or(EntropyError::Code);
-                let other = || others[other].as_ref().ok_or(EntropyError::Code);
+                let mean = || means[member.mean].as_ref().ok_or(EntropyError::Code);
+                let other = || others[member.other].as_ref().ok_or(EntropyError::Code);
                 match (*is_progressive, scan.first, scan.is_refinement) {
                     (false, ..) => sequential(bits, mean()?, other()?)?,
                     (true, 0, false) => difference(bits, mean()?)?,
@@ -155,8 +166,8 @@ impl Picture {
             true => (scan.first..=scan.last, scan.bit),
             false => (0..=63, 0),
         };
-        for &(component, _) in &scan.members {
-            self.components[component].known[selected.clone()].fill(Some(bit));
+        for member in &scan.members {
+            self.components[member.component].known[selected.clone()].fill(Some(bit));
         }
     }
 }

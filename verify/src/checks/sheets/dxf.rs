@@ -6,8 +6,20 @@ use premio_drawing::sheet::Sheet;
 use premio_drawing::{Layer, Stroke, StrokeShape};
 use std::f64::consts::TAU;
 
-/// A group: its code and its value.
-type Group<'t> = (u32, &'t str);
+/// A group of the document.
+#[derive(Clone, Copy, PartialEq)]
+struct Group<'t> {
+    code: u32,
+    value: &'t str,
+}
+
+/// What a layer of the document shows.
+struct ShownLayer {
+    /// The layer of the drawing.
+    layer: Layer,
+    /// Whether its lines are visible.
+    visible: bool,
+}
 
 /// The strokes of the views on a sheet, in the coordinates of the drawing.
 pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Stroke>, String> {
@@ -20,11 +32,15 @@ pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Str
     let mut groups: Vec<Group<'_>> = Vec::new();
     while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
         let code = code.trim().parse().map_err(|e| format!("{code}: {e}"))?;
-        groups.push((code, value));
+        groups.push(Group { code, value });
     }
-    let start = groups.iter().position(|g| *g == (2, "ENTITIES"));
+    let entities = Group {
+        code: 2,
+        value: "ENTITIES",
+    };
+    let start = groups.iter().position(|g| *g == entities);
     let groups = &groups[start.ok_or("no entities")?..];
-    let starts = groups.iter().enumerate().filter(|(_, g)| g.0 == 0);
+    let starts = groups.iter().enumerate().filter(|(_, g)| g.code == 0);
     let starts: Vec<usize> = starts.map(|(i, _)| i).collect();
     let mut strokes = Vec::new();
     for pair in starts.windows(2) {
@@ -33,11 +49,11 @@ pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Str
             unit,
             paper,
         };
-        if entity.groups[0].1 == "ENDSEC" {
+        if entity.groups[0].value == "ENDSEC" {
             break;
         }
-        let Some((layer, visible)) = layer(entity.text(8).ok_or("an entity without a layer")?)
-        else {
+        let name = entity.text(8).ok_or("an entity without a layer")?;
+        let Some(ShownLayer { layer, visible }) = shown_layer(name) else {
             continue;
         };
         strokes.push(Stroke {
@@ -51,11 +67,14 @@ pub(super) fn read(text: &str, sheet: &Sheet, paper: &Placing) -> Result<Vec<Str
 
 /// The layer of the drawing that a layer of the document shows; none for the frame and the title
 /// block.
-fn layer(name: &str) -> Option<(Layer, bool)> {
+fn shown_layer(name: &str) -> Option<ShownLayer> {
     let (kind, seen) = name.rsplit_once('_')?;
     let mut all = Layer::ALL.into_iter();
     let layer = all.find(|layer| layer.name().eq_ignore_ascii_case(kind))?;
-    Some((layer, seen == "VISIBLE"))
+    Some(ShownLayer {
+        layer,
+        visible: seen == "VISIBLE",
+    })
 }
 
 struct Entity<'t> {
@@ -66,12 +85,15 @@ struct Entity<'t> {
 
 impl Entity<'_> {
     fn text(&self, code: u32) -> Option<&str> {
-        self.groups.iter().find(|g| g.0 == code).map(|g| g.1)
+        self.groups.iter().find(|g| g.code == code).map(|g| g.value)
     }
 
     fn numbers(&self, code: u32) -> impl Iterator<Item = Result<f64, String>> {
-        let mine = self.groups.iter().filter(move |g| g.0 == code);
-        mine.map(|g| g.1.parse().map_err(|e| format!("{}: {e}", g.1)))
+        let mine = self.groups.iter().filter(move |g| g.code == code);
+        mine.map(|g| {
+            let number = g.value.parse();
+            number.map_err(|e| format!("{}: {e}", g.value))
+        })
     }
 
     fn number(&self, code: u32) -> Result<f64, String> {
@@ -91,7 +113,7 @@ impl Entity<'_> {
 
     fn shape(&self) -> Result<StrokeShape, String> {
         let length = |x: f64| x * self.unit / self.paper.factor;
-        match self.groups[0].1 {
+        match self.groups[0].value {
             "LINE" => Ok(StrokeShape::Line([self.point(10)?, self.point(11)?])),
             "LWPOLYLINE" => {
                 let points = self.numbers(10).zip(self.numbers(20));

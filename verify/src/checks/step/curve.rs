@@ -94,6 +94,13 @@ pub enum StepCurve {
     Spline(StepSpline<3>),
 }
 
+/// A point of a curve, and the derivative there.
+#[derive(Clone, Copy, Debug)]
+pub struct StepCurvePoint {
+    pub point: Point3<f64>,
+    pub derivative: Vector3<f64>,
+}
+
 impl StepCurve {
     /// Whether the parameter has the period of a turn.
     pub fn is_periodic(&self) -> bool {
@@ -118,15 +125,16 @@ impl StepCurve {
     }
 
     /// The point and the derivative.
-    pub fn at(&self, t: f64) -> (Point3<f64>, Vector3<f64>) {
-        let on = |place: &Placement, [x, y]: [f64; 2], [dx, dy]: [f64; 2]| {
-            (
-                place.origin + place.x * x + place.y * y,
-                place.x * dx + place.y * dy,
-            )
+    pub fn at(&self, t: f64) -> StepCurvePoint {
+        let on = |place: &Placement, [x, y]: [f64; 2], [dx, dy]: [f64; 2]| StepCurvePoint {
+            point: place.origin + place.x * x + place.y * y,
+            derivative: place.x * dx + place.y * dy,
         };
         match self {
-            Self::Line { origin, direction } => (origin + direction * t, *direction),
+            Self::Line { origin, direction } => StepCurvePoint {
+                point: origin + direction * t,
+                derivative: *direction,
+            },
             Self::Ellipse { place, a, b } => {
                 let (sin, cos) = t.sin_cos();
                 on(place, [a * cos, b * sin], [-a * sin, b * cos])
@@ -141,7 +149,10 @@ impl StepCurve {
             }
             Self::Spline(spline) => {
                 let [p, d] = spline.at(t);
-                (Point3::from(p), Vector3::from(d))
+                StepCurvePoint {
+                    point: Point3::from(p),
+                    derivative: Vector3::from(d),
+                }
             }
         }
     }

@@ -24,7 +24,15 @@ pub enum StepValue {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepInstance {
     /// The entities with their parameters.
-    pub parts: Vec<(String, Vec<StepValue>)>,
+    pub parts: Vec<StepEntity>,
+}
+
+/// An entity of an instance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepEntity {
+    pub name: String,
+    /// The parameters.
+    pub values: Vec<StepValue>,
 }
 
 /// Why a file cannot be read.
@@ -130,13 +138,13 @@ impl Cursor<'_> {
         Ok(StepInstance { parts })
     }
 
-    fn part(&mut self) -> Result<(String, Vec<StepValue>), StepReadError> {
+    fn part(&mut self) -> Result<StepEntity, StepReadError> {
         let name = self.while_is(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
         if name.is_empty() {
             return Err(self.error("the name of an entity"));
         }
         match self.value()? {
-            StepValue::List(values) => Ok((name, values)),
+            StepValue::List(values) => Ok(StepEntity { name, values }),
             _ => Err(self.error("parameters in brackets")),
         }
     }
@@ -166,7 +174,7 @@ impl Cursor<'_> {
             }
             'A'..='Z' => {
                 // A typed value is replaced by its value.
-                let (_, mut values) = self.part()?;
+                let mut values = self.part()?.values;
                 values.pop().ok_or_else(|| self.error("a value"))
             }
             _ => {

@@ -1,6 +1,6 @@
 //! The rules for the solids of a STEP file.
 
-use super::curve::StepCurve;
+use super::curve::{StepCurve, StepCurvePoint};
 use super::shape::{StepEdge, StepEdgeUse, StepFace, StepShape};
 use super::surface::{Pole, StepSurface};
 use nalgebra::Point3;
@@ -50,7 +50,7 @@ pub enum StepRule {
     ClosedLoop([f64; 2]),
     /// In a shell every edge is used twice, with opposite senses; the number of uses and the sum of
     /// their senses.
-    TwoUses(usize, i32),
+    TwoUses { uses: usize, sum: i32 },
     /// Outer shells enclose material, voids do not; the volume that a shell encloses.
     Orientation(f64),
     /// The volume by the file's curves and surfaces is the boundary's; that volume.
@@ -71,7 +71,7 @@ impl fmt::Display for Broken {
             StepRule::ClosedLoop([u, v]) => {
                 write!(f, "a loop is open by ({u:.3}, {v:.3}) in its parameters")?;
             }
-            StepRule::TwoUses(uses, sum) => {
+            StepRule::TwoUses { uses, sum } => {
                 write!(f, "an edge has {uses} uses in a shell, of senses {sum:+}")?;
             }
             StepRule::Orientation(volume) => write!(f, "a shell encloses {volume}")?,
@@ -153,7 +153,7 @@ const PERIOD: f64 = 1.0 / (1u64 << 26) as f64;
 fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
     let mut broken = Vec::new();
     for k in 0..2 {
-        let (p, _) = edge.curve.at(edge.range[k]);
+        let p = edge.curve.at(edge.range[k]).point;
         let off = (p - edge.points[k]).norm();
         if off.is_nan() || off > known.accuracy {
             let rule = StepRule::VertexOnCurve(off);
@@ -167,7 +167,7 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
         let step = (pair[1] - pair[0]) / f64::from(PLACES);
         (0..=PLACES).map(move |k| pair[0] + step * f64::from(k))
     });
-    let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).0).collect();
+    let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).point).collect();
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_open = edge.ends[0] != edge.ends[1];
     // Between two vertices close to each other no reader can distinguish a full turn from an edge
@@ -191,19 +191,56 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
 
 /// Edges of a shell that are not used twice with opposite senses.
 fn misused(shape: &StepShape, shell: &[StepFace]) -> Vec<Broken> {
-    let mut uses: HashMap<u32, (usize, i32)> = HashMap::new();
+    let mut senses: HashMap<u32, Vec<i32>> = HashMap::new();
     for used in shell.iter().flat_map(|face| &face.loops).flatten() {
-        let (count, sum) = uses.entry(used.edge).or_default();
-        *count += 1;
-        *sum += if used.along { 1 } else { -1 };
+        let sense = if used.along { 1 } else { -1 };
+        senses.entry(used.edge).or_default().push(sense);
     }
-    let wrong = uses.into_iter().filter(|(_, u)| *u != (2, 0));
+    let counted = senses.into_iter().map(|(edge, senses)| {
+        let (uses, sum) = (senses.len(), senses.iter().sum());
+        (edge, StepRule::TwoUses { uses, sum })
+    });
+    let right = StepRule::TwoUses { uses: 2, sum: 0 };
+    let wrong = counted.filter(|(_, rule)| *rule != right);
     wrong
-        .map(|(edge, (count, sum))| Broken {
-            rule: StepRule::TwoUses(count, sum),
+        .map(|(edge, rule)| Broken {
+            rule,
             place: shape.edges[&edge].points[0],
         })
         .collect()
+}
+
+/// The end of an edge at a pole.
+#[derive(Clone, Copy)]
+struct PoleArrival {
+    pole: Pole,
+    /// The parameter u with which the edge arrives.
+    u: f64,
+    used: StepEdgeUse,
+}
+
+/// A pole at which two edges meet.
+#[derive(Clone, Copy)]
+struct PoleCusp {
+    pole: Pole,
+    /// The parameter u with which the first edge arrives.
+    u: f64,
+}
+
+/// The integral of P du along a piece of a curve.
+#[derive(Clone, Copy)]
+struct PieceIntegral {
+    sum: f64,
+    /// The parameters at the end of the piece.
+    end: [f64; 2],
+}
+
+/// A vertex at which an edge of a loop starts or ends.
+#[derive(Clone, Copy)]
+struct LoopVertex {
+    /// The number of the vertex.
+    id: u32,
+    point: Point3<f64>,
 }
 
 /// A position in the parameters of a surface that moves along a loop.
@@ -215,12 +252,13 @@ struct Walk<'s> {
     first: Option<[f64; 2]>,
     /// Minus the integral of P du.
     flow: f64,
-    /// The pole at which the last edge ended, the u there, and the edge.
-    pole: Option<(Pole, f64, StepEdgeUse)>,
-    first_pole: Option<(Pole, StepEdgeUse)>,
-    /// A pole at which two edges meet, and the u there. If they have the same direction, or turn
-    /// away from it at once, one more or one less turn may lie between them.
-    cusp: Option<(Pole, f64)>,
+    /// The pole at which the last edge ended.
+    pole: Option<PoleArrival>,
+    /// The first edge, if it starts at a pole.
+    first_from_pole: Option<StepEdgeUse>,
+    /// A pole at which two edges meet. If they have the same direction, or turn away from it at
+    /// once, one more or one less turn may lie between them.
+    cusp: Option<PoleCusp>,
     /// Whether loops are counterclockwise as seen along the surface's normal.
     along: bool,
     /// The distance from a pole within which a point is at the pole.
@@ -240,11 +278,11 @@ impl Measured {
             let Some(start) = ring.first().map(|u| tail(shape, u)) else {
                 continue;
             };
-            let place = start.1;
+            let place = start.point;
             for (used, next) in ring.iter().zip(ring.iter().cycle().skip(1)) {
                 let edge = &shape.edges[&used.edge];
                 self.hold(edge, face.surface, surface, known);
-                if head(shape, used).0 != tail(shape, next).0 {
+                if head(shape, used).id != tail(shape, next).id {
                     let rule = StepRule::Chain;
                     self.broken.push(Broken { rule, place });
                 }
@@ -256,7 +294,7 @@ impl Measured {
                 first: None,
                 flow: 0.0,
                 pole: None,
-                first_pole: None,
+                first_from_pole: None,
                 cusp: None,
                 along: face.along,
                 tolerance: known.size * POLE,
@@ -286,17 +324,17 @@ impl Measured {
         let mut off: f64 = 0.0;
         let mut off_parametric: f64 = 0.0;
         let mut places = [edge.points[0]; 2];
-        let on = edge.on.iter().find(|(of, _)| *of == id);
+        let on = edge.on.iter().find(|on| on.surface == id);
         for pair in edge.curve.stops(edge.range).windows(2) {
             for k in 0..=PLACES {
                 let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(PLACES);
-                let (p, _) = edge.curve.at(t);
+                let p = edge.curve.at(t).point;
                 let away = surface.distance(&p).abs();
                 if away.is_nan() || away > off {
                     (off, places[0]) = (away, p);
                 }
-                if let Some((_, spline)) = on {
-                    let away = (surface.point(spline.at(t)[0]) - p).norm();
+                if let Some(on) = on {
+                    let away = (surface.point(on.spline.at(t)[0]) - p).norm();
                     if away.is_nan() || away > off_parametric {
                         (off_parametric, places[1]) = (away, p);
                     }
@@ -326,16 +364,24 @@ const POLE: f64 = 1.0 / (1u64 << 30) as f64;
 /// The relative gap allowed in loops: vertices and curves are f64, and splines approximate.
 const GAP: f64 = 1.0 / 1024.0;
 
-fn tail(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
-    let edge = &shape.edges[&used.edge];
-    let k = usize::from(!used.along);
-    (edge.ends[k], edge.points[k])
+/// The vertex at which an edge starts.
+fn tail(shape: &StepShape, used: &StepEdgeUse) -> LoopVertex {
+    shape.edges[&used.edge].vertex(usize::from(!used.along))
 }
 
-fn head(shape: &StepShape, used: &StepEdgeUse) -> (u32, Point3<f64>) {
-    let edge = &shape.edges[&used.edge];
-    let k = usize::from(used.along);
-    (edge.ends[k], edge.points[k])
+/// The vertex at which an edge ends.
+fn head(shape: &StepShape, used: &StepEdgeUse) -> LoopVertex {
+    shape.edges[&used.edge].vertex(usize::from(used.along))
+}
+
+impl StepEdge {
+    /// The vertex at an end.
+    fn vertex(&self, k: usize) -> LoopVertex {
+        LoopVertex {
+            id: self.ends[k],
+            point: self.points[k],
+        }
+    }
 }
 
 /// Gauss's five-point rule: nodes and weights without the middle one.
@@ -377,27 +423,28 @@ impl Walk<'_> {
                 pair[1]
             };
             if is_first {
-                self.enter(&edge.curve, from, poles[0].map(|pole| (pole, used)));
+                self.enter(&edge.curve, from, poles[0].map(|_| used));
             }
             self.piece(&edge.curve, [from, to], HALVED);
         }
         let ended = poles[1].zip(self.at);
-        self.pole = ended.map(|(pole, at)| (pole, at[0], used));
+        self.pole = ended.map(|(pole, [u, _])| PoleArrival { pole, u, used });
     }
 
-    /// Moves to the start of an edge.
-    fn enter(&mut self, curve: &StepCurve, t: f64, pole: Option<(Pole, StepEdgeUse)>) {
-        let (p, _) = curve.at(t);
+    /// Moves to the start of an edge; `from_pole` is the edge if it starts at a pole.
+    fn enter(&mut self, curve: &StepCurve, t: f64, from_pole: Option<StepEdgeUse>) {
+        let p = curve.at(t).point;
         let there = self.surface.parameters(&p);
         let Some(at) = self.at else {
             self.at = Some(there);
             self.first = self.at;
-            self.first_pole = pole;
+            self.first_from_pole = from_pole;
             return;
         };
         let mut next = self.nearest_equivalent(there, at);
-        if let (Some((pole, u, last)), Some((_, used))) = (self.pole, pole) {
-            next[0] = self.around_pole(pole, [u, there[0]], is_seam(last, used));
+        if let (Some(last), Some(used)) = (self.pole, from_pole) {
+            let is_seam = is_seam(last.used, used);
+            next[0] = self.around_pole(last.pole, [last.u, there[0]], is_seam);
             next[1] = there[1];
         }
         self.at = Some(next);
@@ -411,7 +458,7 @@ impl Walk<'_> {
         if is_seam {
             turned = TAU;
         } else {
-            self.cusp = Some((pole, from));
+            self.cusp = Some(PoleCusp { pole, u: from });
         }
         self.pass_pole(pole, from, down * turned)
     }
@@ -451,29 +498,29 @@ impl Walk<'_> {
         let Some(at) = self.at else { return };
         let [from, to] = range;
         let middle = 0.5 * (from + to);
-        let (whole, ends) = self.integral(curve, range, at);
-        let (first, between) = self.integral(curve, [from, middle], at);
-        let (second, end) = self.integral(curve, [middle, to], between);
-        let scale = self.fine;
-        let turn = (ends[0] - at[0]).abs().max((between[0] - at[0]).abs());
-        let is_fine = (first + second - whole).abs() <= scale
-            && (ends[0] - end[0]).abs() < 1.0
+        let whole = self.integral(curve, range, at);
+        let first = self.integral(curve, [from, middle], at);
+        let second = self.integral(curve, [middle, to], first.end);
+        let turn = (whole.end[0] - at[0])
+            .abs()
+            .max((first.end[0] - at[0]).abs());
+        let is_fine = (first.sum + second.sum - whole.sum).abs() <= self.fine
+            && (whole.end[0] - second.end[0]).abs() < 1.0
             && (!self.surface.has_angle() || turn < 1.0);
         if is_fine || halvings == 0 {
             if self.surface.has_angle() && turn > 0.5 * PI {
                 self.is_clear = false;
             }
-            self.flow -= first + second;
-            self.at = Some(end);
+            self.flow -= first.sum + second.sum;
+            self.at = Some(second.end);
             return;
         }
         self.piece(curve, [from, middle], halvings - 1);
         self.piece(curve, [middle, to], halvings - 1);
     }
 
-    /// The integral of P du along a piece that starts at given parameters, and the parameters at
-    /// its end.
-    fn integral(&self, curve: &StepCurve, [a, b]: [f64; 2], mut at: [f64; 2]) -> (f64, [f64; 2]) {
+    /// The integral along a piece that starts at given parameters.
+    fn integral(&self, curve: &StepCurve, [a, b]: [f64; 2], mut at: [f64; 2]) -> PieceIntegral {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let [[inner, inner_weight], [outer, outer_weight]] = GAUSS;
         let places = [
@@ -485,16 +532,16 @@ impl Walk<'_> {
         ];
         let mut sum = 0.0;
         for (x, weight) in places {
-            let (p, d) = curve.at(middle + half * x);
-            at = self.nearest_equivalent(self.surface.parameters(&p), at);
+            let StepCurvePoint { point, derivative } = curve.at(middle + half * x);
+            at = self.nearest_equivalent(self.surface.parameters(&point), at);
             let flow = self.surface.flow(at, &self.about);
-            sum += weight * flow * self.surface.u_speed(&p, &d);
+            sum += weight * flow * self.surface.u_speed(&point, &derivative);
         }
-        let (p, _) = curve.at(b);
-        (
-            half * sum,
-            self.nearest_equivalent(self.surface.parameters(&p), at),
-        )
+        let there = self.surface.parameters(&curve.at(b).point);
+        PieceIntegral {
+            sum: half * sum,
+            end: self.nearest_equivalent(there, at),
+        }
     }
 
     /// Returns to the start, and gives the gap in both parameters.
@@ -502,15 +549,16 @@ impl Walk<'_> {
         let (Some(first), Some(mut at)) = (self.first, self.at) else {
             return [0.0; 2];
         };
-        if let (Some((pole, u, last)), Some((_, used))) = (self.pole, self.first_pole) {
-            let angle = self.around_pole(pole, [u, first[0]], is_seam(last, used));
+        if let (Some(last), Some(used)) = (self.pole, self.first_from_pole) {
+            let is_seam = is_seam(last.used, used);
+            let angle = self.around_pole(last.pole, [last.u, first[0]], is_seam);
             at = [angle, first[1]];
         }
         let mut open = [at[0] - first[0], at[1] - first[1]];
-        if let Some((pole, from)) = self.cusp {
+        if let Some(PoleCusp { pole, u }) = self.cusp {
             let turned = -open[0].signum() * TAU;
             if (open[0] + turned).abs() < GAP {
-                self.pass_pole(pole, from, turned);
+                self.pass_pole(pole, u, turned);
                 open[0] += turned;
             }
         }

@@ -14,10 +14,18 @@ pub struct StepEdge {
     pub ends: [u32; 2],
     pub points: [Point3<f64>; 2],
     pub curve: StepCurve,
-    /// The curves in the parameters of surfaces, by the number of the surface.
-    pub on: Vec<(u32, StepSpline<2>)>,
+    /// The curves in the parameters of surfaces.
+    pub on: Vec<ParametricCurve>,
     /// The parameters of its ends, as a reader computes them.
     pub range: [f64; 2],
+}
+
+/// A curve in the parameters of a surface.
+#[derive(Clone, Debug)]
+pub struct ParametricCurve {
+    /// The number of the surface.
+    pub surface: u32,
+    pub spline: StepSpline<2>,
 }
 
 /// The use of an edge by a loop.
@@ -55,7 +63,7 @@ impl StepShape {
         };
         let mut solids: Vec<u32> = Vec::new();
         for (id, instance) in instances {
-            let is_solid = |name| instance.parts.iter().any(|(n, _)| n == name);
+            let is_solid = |name| instance.parts.iter().any(|part| part.name == name);
             if is_solid("MANIFOLD_SOLID_BREP") || is_solid("BREP_WITH_VOIDS") {
                 solids.push(*id);
             }
@@ -146,8 +154,8 @@ impl<'i> Reader<'i> {
         match self.instances.get(&id) {
             Some(StepInstance { parts }) if parts.len() == 1 => Ok(Entity {
                 id,
-                name: &parts[0].0,
-                values: &parts[0].1,
+                name: &parts[0].name,
+                values: &parts[0].values,
             }),
             _ => Err(StepReadError::Instance { id, expected }),
         }
@@ -234,7 +242,10 @@ impl<'i> Reader<'i> {
                 let [spline] = represented.instances(1)?[..] else {
                     return Err(represented.wrong("one curve"));
                 };
-                on.push((pcurve.instance(1)?, self.spline(spline)?));
+                on.push(ParametricCurve {
+                    surface: pcurve.instance(1)?,
+                    spline: self.spline(spline)?,
+                });
             }
             curve = self.entity(curve.instance(1)?)?;
         }

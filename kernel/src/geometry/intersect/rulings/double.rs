@@ -9,20 +9,42 @@ use super::{Rulings, apart, sampled_rulings};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
 use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
+use crate::geometry::trace::BranchPosition;
 use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
-use crate::number::analytic::{harmonic, harmonic_slope};
+use crate::number::analytic::harmonic_slope;
 use crate::number::bisection::bisect;
-use crate::number::float::Float;
+use crate::number::float::{Float, harmonic};
 use crate::number::predicates::{Predicates, Side};
 
-/// The nodes on a curve, as (angle of the node, parameter of the curve).
-type Passes<N> = Vec<(N, N)>;
+/// The passage of a curve through a node.
+#[derive(Clone, Copy)]
+struct NodePassage<N: Float = f64> {
+    /// The angle of the node.
+    angle: N,
+    /// The parameter of the curve.
+    t: N,
+}
+
+/// A zero of Δ at which its sign changes.
+#[derive(Clone, Copy)]
+struct SignChange<N: Float = f64> {
+    angle: N,
+    /// Whether Δ is positive after it.
+    rising: bool,
+}
+
+/// The sign of Δ at an extremum.
+#[derive(Clone, Copy)]
+struct ExtremumSide<N: Float = f64> {
+    angle: N,
+    side: Side,
+}
 
 /// A branch over the base, with the nodes that it passes.
 struct QuarticBranch<N: Float> {
     curve: QuadricCurve<N>,
-    passes: Passes<N>,
+    passes: Vec<NodePassage<N>>,
 }
 
 impl<N: Float> Rulings<'_, N> {
@@ -103,7 +125,7 @@ impl<N: Float> Rulings<'_, N> {
         self.add_conic(&w(-N::ONE), false, predicates, meeting);
         // The conics cross where s vanishes.
         let whole = [root[0], root[1], root[2], N::ZERO, N::ZERO];
-        for (u, _) in zeros_of(&whole) {
+        for u in zeros_of(&whole) {
             let m = self.middle(u);
             let p = self.world(u, m);
             if self.is_on_base(m) && predicates.within(self.other.distance(&p)) {
@@ -151,7 +173,12 @@ impl<N: Float> Rulings<'_, N> {
     }
 
     /// A branch without passes through nodes, or with those given.
-    fn branch(&self, sweep: Sweep<N>, height: Height<N>, passes: Passes<N>) -> QuarticBranch<N> {
+    fn branch(
+        &self,
+        sweep: Sweep<N>,
+        height: Height<N>,
+        passes: Vec<NodePassage<N>>,
+    ) -> QuarticBranch<N> {
         let curve = QuadricCurve {
             base: self.base,
             sweep,
@@ -185,7 +212,8 @@ impl<N: Float> Rulings<'_, N> {
             node: Some(node),
             sign: N::ONE,
         };
-        let passes = vec![(node, node), (node, node + N::TAU)];
+        let pass = |t: N| NodePassage { angle: node, t };
+        let passes = vec![pass(node), pass(node + N::TAU)];
         vec![self.branch(Sweep::Round { turns: 2 }, height, passes)]
     }
 
@@ -203,7 +231,8 @@ impl<N: Float> Rulings<'_, N> {
             // rest = K sin²((u - n)/2); only K is needed.
             rest = [N::TWO * rest[0], N::ZERO, N::ZERO];
             let t = ((mid - n) / half).clamp(-N::ONE, N::ONE).acos();
-            passes = vec![(n, t), (n, N::TAU - t)];
+            let pass = |t: N| NodePassage { angle: n, t };
+            passes = vec![pass(t), pass(N::TAU - t)];
         }
         let height = Height::Deflated {
             along: self.along(),
@@ -218,7 +247,7 @@ impl<N: Float> Rulings<'_, N> {
     fn add_clipped(
         &self,
         q: QuadricCurve<N>,
-        nodes: &[(N, N)],
+        nodes: &[NodePassage<N>],
         predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
@@ -231,15 +260,15 @@ impl<N: Float> Rulings<'_, N> {
         for r in ranges {
             for range in self.on_other_nappe(&curve, r, predicates) {
                 let closed = range == [N::ZERO, period];
-                let index = meeting.branches.len();
+                let branch = meeting.branches.len();
                 meeting.branches.push(Branch {
                     curve: curve.clone(),
                     range,
                     closed,
                     tangent: false,
                 });
-                for &(u, t) in nodes {
-                    let point = self.world(u, self.middle(u));
+                for &NodePassage { angle, t } in nodes {
+                    let point = self.world(angle, self.middle(angle));
                     let t = range[0] + (t - range[0]).rem_euclid(period);
                     if t > range[1] {
                         continue;
@@ -249,10 +278,10 @@ impl<N: Float> Rulings<'_, N> {
                         .iter_mut()
                         .find(|n| predicates.within((n.point - point).length()));
                     match known {
-                        Some(node) => node.on.push((index, t)),
+                        Some(node) => node.on.push(BranchPosition { branch, t }),
                         None => meeting.nodes.push(Node {
                             point,
-                            on: vec![(index, t)],
+                            on: vec![BranchPosition { branch, t }],
                         }),
                     }
                 }
@@ -270,7 +299,7 @@ impl<N: Float> Rulings<'_, N> {
             *c += N::TWO * least * *b;
         }
         limit[0] += self.lead * least * least;
-        let angles = zeros_of(&limit).into_iter().map(|zero| zero.0);
+        let angles = zeros_of(&limit).into_iter();
         let mut marks: Vec<N> = angles.flat_map(|u| q.parameters_of(u)).collect();
         marks.sort_by(N::total_cmp);
         let is_inside = |[a, b]: [N; 2]| q.height_at(N::HALF * (a + b)) > least;
@@ -308,23 +337,28 @@ impl<N: Float> Rulings<'_, N> {
             out.positive = self.state(N::ZERO, predicates) == Side::Inside;
             return Ok(out);
         }
-        let states: Vec<(N, Side)> = extrema
+        let states: Vec<ExtremumSide<N>> = extrema
             .iter()
-            .map(|&(u, _)| (u, self.state(u, predicates)))
+            .map(|&angle| ExtremumSide {
+                angle,
+                side: self.state(angle, predicates),
+            })
             .collect();
         let n = states.len();
-        let mut roots: Vec<(N, bool)> = Vec::new();
+        let mut roots: Vec<SignChange<N>> = Vec::new();
         for i in 0..n {
-            let (u, s) = states[i];
-            let (v, t) = states[(i + 1) % n];
+            let (before, here, next) = (states[(i + n - 1) % n], states[i], states[(i + 1) % n]);
+            let (u, s) = (here.angle, here.side);
+            let (v, t) = (next.angle, next.side);
             let v = if i + 1 == n { v + N::TAU } else { v };
             if (s == Side::Inside) != (t == Side::Inside) && s != Side::On && t != Side::On {
-                let root = bisect(u, v, self.delta(u), |u| self.delta(u));
-                roots.push((root, t == Side::Inside));
+                roots.push(SignChange {
+                    angle: bisect(u, v, self.delta(u), |u| self.delta(u)),
+                    rising: t == Side::Inside,
+                });
             }
             if s == Side::On {
-                let (_, before) = states[(i + n - 1) % n];
-                match (before, t) {
+                match (before.side, t) {
                     (Side::Inside, Side::Inside) => out.nodes.push(u),
                     (Side::Outside, Side::Outside) => out.isolated.push(u),
                     _ => {
@@ -334,10 +368,10 @@ impl<N: Float> Rulings<'_, N> {
                 }
             }
         }
-        out.positive = roots.is_empty() && states.iter().any(|s| s.1 == Side::Inside);
-        for (i, &(a, rising)) in roots.iter().enumerate() {
-            if rising {
-                let (b, _) = roots[(i + 1) % roots.len()];
+        out.positive = roots.is_empty() && states.iter().any(|s| s.side == Side::Inside);
+        for (i, root) in roots.iter().enumerate() {
+            if root.rising {
+                let (a, b) = (root.angle, roots[(i + 1) % roots.len()].angle);
                 out.arcs.push([a, if b < a { b + N::TAU } else { b }]);
             }
         }

@@ -18,8 +18,7 @@ use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::surface_pair::{Carrier, SurfacePair};
 use crate::geometry::trigonometric::{Trig1, Trig2, product, trig1};
 use crate::geometry::vector::Length;
-use crate::number::analytic::harmonic;
-use crate::number::float::Float;
+use crate::number::float::{Float, harmonic};
 use crate::number::predicates::{Predicates, Side};
 use nalgebra::{Point3, Vector3};
 

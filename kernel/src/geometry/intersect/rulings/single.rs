@@ -6,7 +6,9 @@ use crate::geometry::curve::{Curve, Line};
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
 use crate::geometry::quadric_curve::{Height, QuadricCurve, Ruled, Sweep};
 use crate::geometry::surface::Surface;
-use crate::geometry::trigonometric::{Trig1, Trig2, divide, divide_half, trig1, zeros_of};
+use crate::geometry::trigonometric::{
+    HalfAngleQuotients, Trig1, Trig2, divide, divide_half, trig1, zeros_of,
+};
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Predicates;
@@ -24,7 +26,8 @@ impl<N: Float> Rulings<'_, N> {
         let height = match shared {
             Some(u0) if tangent => self.without_contact(u0),
             Some(u0) => {
-                let (linear, constant) = divide_half(&self.linear, &self.constant, u0);
+                let HalfAngleQuotients { linear, constant } =
+                    divide_half(&self.linear, &self.constant, u0);
                 Height::Cubic { linear, constant }
             }
             None => Height::Rational {
@@ -164,7 +167,7 @@ impl<N: Float> Rulings<'_, N> {
         };
         let mut marks: Vec<N> = shared.into_iter().collect();
         for k in &limits {
-            marks.extend(zeros_of(k).into_iter().map(|r| r.0));
+            marks.extend(zeros_of(k));
         }
         let mut marks: Vec<N> = marks.into_iter().map(|u| u.rem_euclid(N::TAU)).collect();
         marks.sort_by(N::total_cmp);

@@ -297,3 +297,18 @@ fn every_instance_of_a_file_is_written_before_it_is_named() {
         assert_eq!(count, solids, "{name}");
     }
 }
+
+/// Two rings 1e-9 from tangent in a block: on one of them no seam reaches both of its ends. The loops
+/// along it do not close, and the part is refused with the place.
+#[test]
+fn a_seam_that_does_not_close_is_refused() {
+    let known = part(
+        "A = (BLO(X=3, Y=1.5, Z=0.5) AT (MOVX=-1.5, MOVY=0.5, MOVZ=0.5)
+         UN TOR(RMAJ=1, RMIN=0.5) AT (ROTY=90, MOVY=2.000000999999999999999954748111825886258685613938723690807819366455078125, MOVZ=-1.5)
+         UN TOR(RMAJ=1.5, RMIN=1) AT (ROTY=0.0000000010000000000000000622815914577798564188970686927859787829220294952392578125,
+             ROTX=-0.0000000010000000000000000622815914577798564188970686927859787829220294952392578125))
+         PART = A AT (MOVY=2, MOVZ=-1)",
+    );
+    let seamed = TwoManifold::new(&known.brep, known.resolution);
+    assert!(matches!(seamed, Err(SeamError::Blocked { .. })));
+}

@@ -205,7 +205,10 @@ impl<'a> Linking<'a, '_> {
             let mut at = start;
             while seen.insert(at) {
                 ring.push(at);
-                at = next[&at];
+                at = next
+                    .get(&at)
+                    .copied()
+                    .ok_or_else(|| self.open_loop(face, at))?;
             }
             loops.extend((!ring.is_empty()).then_some(ring));
         }
@@ -226,6 +229,18 @@ impl<'a> Linking<'a, '_> {
             });
         }
         Ok(())
+    }
+
+    /// The error of a loop that does not continue after an edge: its seam has no end there.
+    fn open_loop(&self, face: FaceId, half: HalfEdge) -> SeamError {
+        let edge = &self.seamed.edges[half.edge];
+        let place = edge
+            .curve
+            .point(edge.range[usize::from(half.sense == Sense::Along)]);
+        SeamError::Blocked {
+            face,
+            place: place.into(),
+        }
     }
 
     /// Adds the seams of a face, and routes its loops along them.

@@ -146,7 +146,17 @@ impl<'t> Placement<'t> {
             Rounded::Outside => {
                 let outside = offset(m).each_ref().map(|x| self.rounding.error(x));
                 let rotation = frame.rotation.rotation_f64();
-                let along = |k: usize| (0..3).map(|i| rotation[(i, k)].abs() * outside[i]).sum();
+                let is_simple = rotation.iter().all(|x| x.fract() == 0.0);
+                let turned = if is_simple {
+                    0.0
+                } else {
+                    self.rounding.rotation_error()
+                };
+                let length: f64 = offset(m).iter().map(|x| to_f64(x).abs()).sum();
+                let along = |k: usize| -> f64 {
+                    let moved = (0..3).map(|i| rotation[(i, k)].abs() * outside[i]);
+                    moved.sum::<f64>() + turned * length
+                };
                 std::array::from_fn(along)
             }
         });

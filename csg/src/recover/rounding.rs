@@ -12,15 +12,16 @@ use std::fmt;
 pub enum Rounding {
     /// All have at most this number of digits after the point.
     Decimals(u32),
-    /// All have at most six significant digits, as OpenSCAD writes them.
-    SixDigits,
+    /// All have at most six significant digits, as OpenSCAD writes them, and this number of digits
+    /// after the point: they may have been rounded twice.
+    SixDigits(u32),
 }
 
 impl fmt::Display for Rounding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Decimals(digits) => write!(f, "{digits} decimals"),
-            Self::SixDigits => f.write_str("6 significant digits"),
+            Self::SixDigits(_) => f.write_str("6 significant digits"),
         }
     }
 }
@@ -47,33 +48,42 @@ impl Rounding {
         if decimals.len() < all.len() || !DECIMALS.contains(&most) {
             return None;
         }
-        let random = |rounding: Self| {
-            let random = |x: &&&Rational| rounding.has_random_digits(x);
-            all.iter().filter(random).count()
+        // A number of the largest magnitude has no digit beyond the sixth by chance only.
+        let rounding = match all.iter().all(|x| in_units(x, 5 - magnitude(x)).is_some()) {
+            true => Self::SixDigits(most),
+            false => Self::Decimals(most),
         };
-        let candidates = [Self::Decimals(most), Self::SixDigits].map(|r| (random(r), r));
-        let [(fixed, _), (relative, _)] = candidates;
-        let (count, rounding) = candidates[usize::from(relative > fixed)];
+        let count = all.iter().filter(|x| rounding.has_random_digits(x)).count();
         let enough = count >= MIN_RANDOM && SHARE[1] * count >= SHARE[0] * all.len();
         enough.then_some(rounding)
     }
 
+    /// The largest difference of the entries of a rotation matrix from those that were meant:
+    /// angles are decimals, and six digits of a matrix are not.
+    pub(super) fn rotation_error(self) -> f64 {
+        match self {
+            Self::Decimals(_) => 0.0,
+            Self::SixDigits(_) => 0.5 * 10f64.powi(-6),
+        }
+    }
+
     /// The largest difference of a written coordinate from the one that was meant.
     pub fn error(self, x: &Rational) -> f64 {
-        let digits = match self {
-            Self::Decimals(digits) => i32::try_from(digits.max(decimals(x).unwrap_or(0))),
-            Self::SixDigits => Ok(5 - magnitude(x)),
-        };
-        digits.map_or(0.0, |digits| 0.5 * 10f64.powi(-digits))
+        0.5 * 10f64.powi(-self.digits(x))
+    }
+
+    /// The number of digits after the point to which a number is rounded, negative before it.
+    fn digits(self, x: &Rational) -> i32 {
+        let fixed = |digits: u32| i32::try_from(digits).unwrap_or(i32::MAX);
+        match self {
+            Self::Decimals(digits) => fixed(digits),
+            Self::SixDigits(digits) => fixed(digits).min(5 - magnitude(x)),
+        }
     }
 
     /// Whether the last three of all digits are random: not zeros but for a small deviation.
     fn has_random_digits(self, x: &Rational) -> bool {
-        let digits = match self {
-            Self::Decimals(digits) => i32::try_from(digits).unwrap_or(0),
-            Self::SixDigits => 5 - magnitude(x),
-        };
-        let Some(units) = in_units(x, digits) else {
+        let Some(units) = in_units(x, self.digits(x)) else {
             return false;
         };
         let last = units.rem_euclid(LAST);

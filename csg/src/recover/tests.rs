@@ -272,7 +272,12 @@ fn digits_tell_the_rounding() {
         "-98.7654",
         "0.0345678",
     ];
-    assert_eq!(rounding(&six), Some(Rounding::SixDigits));
+    assert_eq!(rounding(&six), Some(Rounding::SixDigits(7)));
+    // Five decimals, of which OpenSCAD kept six digits.
+    let twice = [
+        "0.12346", "1.23457", "12.3457", "123.457", "-98.7654", "0.03457",
+    ];
+    assert_eq!(rounding(&twice), Some(Rounding::SixDigits(5)));
     let fixed = [
         "0.12346",
         "1.23457",
@@ -308,9 +313,10 @@ fn digits_tell_the_rounding() {
 fn the_error_is_half_a_unit_of_the_last_digit() {
     let error = |rounding: Rounding, x: &str| rounding.error(&number(x));
     assert_eq!(error(Rounding::Decimals(5), "12.34568"), 0.5e-5);
-    assert_eq!(error(Rounding::SixDigits, "12.3457"), 0.5e-4);
-    assert_eq!(error(Rounding::SixDigits, "0.0123457"), 0.5e-7);
-    assert_eq!(error(Rounding::SixDigits, "0"), 0.5e-5);
+    assert_eq!(error(Rounding::SixDigits(7), "12.3457"), 0.5e-4);
+    assert_eq!(error(Rounding::SixDigits(7), "0.0123457"), 0.5e-7);
+    assert_eq!(error(Rounding::SixDigits(5), "0.01235"), 0.5e-5);
+    assert_eq!(error(Rounding::SixDigits(7), "0"), 0.5e-5);
 }
 
 proptest! {

@@ -48,30 +48,22 @@ impl Round<'_> {
         [self.along + lo, self.along + hi]
     }
 
-    /// The radii of circles about its axis on which the centre of another one may be meant to lie.
+    /// The radii of circles about its axis on which the centre of another one may be meant to lie:
+    /// those of its own circles, and where their surfaces touch.
     fn circles(&self, other: &Self) -> Vec<Rational> {
-        match (self.primitive, other.primitive, other.radius()) {
-            (Primitive::Torus { major, minor }, Primitive::Sphere { .. }, Some(r)) => {
-                vec![
-                    major.clone(),
-                    major + minor + r,
-                    major + minor - r,
-                    major - minor - r,
-                    major - minor + r,
-                ]
+        let Some(r) = other.radius() else {
+            return Vec::new();
+        };
+        let own = match self.primitive {
+            Primitive::Torus { major, minor } => {
+                vec![major.clone(), major + minor, major - minor]
             }
-            (Primitive::Cylinder { radius, .. }, _, Some(r)) => {
-                let outside = radius + r;
-                let inside = radius - r;
-                let inside = if to_f64(&inside) < 0.0 {
-                    -inside
-                } else {
-                    inside
-                };
-                vec![outside, inside]
-            }
+            Primitive::Cylinder { radius, .. } => vec![radius.clone()],
             _ => Vec::new(),
-        }
+        };
+        let touching = own.iter().flat_map(|radius| [radius + r, radius - r]);
+        let touching: Vec<Rational> = touching.map(distance).collect();
+        [own, touching].concat()
     }
 
     /// The circle about its axis on which the centre of another one lies within the rounding, and
@@ -90,6 +82,14 @@ impl Round<'_> {
         let off = |radius: &Rational| (to_f64(radius) - distance).abs();
         let near = circles.filter(|radius| !radius.is_zero() && off(radius) <= error);
         near.min_by(|a, b| off(a).total_cmp(&off(b)))
+    }
+}
+
+/// A length without its sign.
+fn distance(x: Rational) -> Rational {
+    match x < Rational::ZERO {
+        true => -x,
+        false => x,
     }
 }
 

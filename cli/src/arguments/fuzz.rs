@@ -89,8 +89,8 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{Deep, Grid, Near, Parts, Tangent, Wide};
-        const CHOICES: [ProfileChoice; 7] = [
+        use Profile::{Deep, Grid, Near, Parts, Rounded, Tangent, Wide};
+        const CHOICES: [ProfileChoice; 8] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -98,6 +98,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Deep),
             ProfileChoice::One(Wide),
             ProfileChoice::One(Parts),
+            ProfileChoice::One(Rounded),
         ];
         &CHOICES
     }

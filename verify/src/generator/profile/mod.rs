@@ -4,6 +4,7 @@ mod deep;
 mod grid;
 mod near;
 mod parts;
+pub mod rounded;
 mod tangent;
 mod wide;
 
@@ -29,17 +30,20 @@ pub enum Profile {
     /// A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a
     /// bearing.
     Parts,
+    /// A part of `parts`, turned, with every primitive at rounded coordinates.
+    Rounded,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
         Self::Deep,
         Self::Wide,
         Self::Parts,
+        Self::Rounded,
     ];
 
     /// The name, as it is written on the command line.
@@ -51,6 +55,7 @@ impl Profile {
             Self::Deep => "deep",
             Self::Wide => "wide",
             Self::Parts => "parts",
+            Self::Rounded => "rounded",
         }
     }
 
@@ -73,6 +78,9 @@ impl Profile {
             Self::Parts => {
                 "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
             }
+            Self::Rounded => {
+                "A part of `parts`, turned, with every primitive at coordinates of 4 to 9 decimals or six digits"
+            }
         }
     }
 
@@ -85,6 +93,7 @@ impl Profile {
             Self::Deep => deep::model(seed),
             Self::Wide => wide::model(seed),
             Self::Parts => parts::model(seed),
+            Self::Rounded => rounded::model(seed),
         }
     }
 }
@@ -122,7 +131,7 @@ mod tests {
                     Profile::Tangent => 4,
                     Profile::Deep => 3001,
                     Profile::Wide => 1501,
-                    Profile::Parts => 80,
+                    Profile::Parts | Profile::Rounded => 80,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }

@@ -5,7 +5,7 @@ use crate::diagnostics::CliError;
 use crate::input::{self, EvaluatedPart};
 use crate::output;
 use crate::session::Session;
-use premio::{Recovery, RelationKind};
+use premio::{PrimitiveRelation, Recovery};
 use premio_kernel::number::predicates::{CloseCall, DecisionStats};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -153,13 +153,13 @@ impl Bounds {
 
 impl Recovered {
     fn new(recovery: &Recovery) -> Self {
-        let count = |kind: RelationKind| {
+        let count = |kind: PrimitiveRelation| {
             let found = recovery.relations.iter().find(|r| r.kind == kind);
             (kind.name(), found.map_or(0, |relation| relation.count))
         };
         Self {
             rounding: recovery.rounding.to_string(),
-            relations: RelationKind::ALL.into_iter().map(count).collect(),
+            relations: PrimitiveRelation::ALL.into_iter().map(count).collect(),
             contradictory: recovery.contradictory,
             moved: recovery.moved,
             furthest: recovery.furthest,

@@ -5,7 +5,7 @@
 //! component: p_i = b + q_i with one unknown b and exact q_i. The component is possible if some b
 //! lies within e_i of x_i - q_i for all of its nodes.
 
-use crate::recover::RelationKind;
+use crate::recover::PrimitiveRelation;
 use crate::recover::features::{Feature, FeatureKind};
 use premio_kernel::number::rational::{Rational, from_decimal, from_f64, to_f64};
 
@@ -26,7 +26,7 @@ pub(super) struct Alignment {
     /// By node: its new position, if relations determine it.
     pub positions: Vec<Option<Rational>>,
     /// The recovered relations.
-    pub relations: Vec<RelationKind>,
+    pub relations: Vec<PrimitiveRelation>,
     /// The number of relations that contradict others.
     pub contradictory: usize,
 }

@@ -2,7 +2,7 @@
 //! minus radii.
 
 use crate::primitive::Primitive;
-use crate::recover::RelationKind;
+use crate::recover::PrimitiveRelation;
 use premio_kernel::number::rational::Rational;
 
 /// A kind of number.
@@ -18,11 +18,11 @@ pub(super) enum FeatureKind {
 
 impl FeatureKind {
     /// The relation of two equal numbers.
-    pub fn relation(self, other: Self) -> RelationKind {
+    pub fn relation(self, other: Self) -> PrimitiveRelation {
         match (self, other) {
-            (Self::Plane, Self::Plane) => RelationKind::Coplanar,
-            (Self::Tangent, _) | (_, Self::Tangent) => RelationKind::Tangent,
-            _ => RelationKind::Aligned,
+            (Self::Plane, Self::Plane) => PrimitiveRelation::Coplanar,
+            (Self::Tangent, _) | (_, Self::Tangent) => PrimitiveRelation::Tangent,
+            _ => PrimitiveRelation::Aligned,
         }
     }
 }

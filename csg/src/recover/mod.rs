@@ -31,7 +31,7 @@ use std::fmt;
 
 /// A kind of relation between primitives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum RelationKind {
+pub enum PrimitiveRelation {
     /// Two planes coincide.
     Coplanar,
     /// An axis or centre lies level with another one along an axis of the frame.
@@ -42,7 +42,7 @@ pub enum RelationKind {
     OnCircle,
 }
 
-impl RelationKind {
+impl PrimitiveRelation {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::Coplanar, Self::Aligned, Self::Tangent, Self::OnCircle];
 
@@ -57,7 +57,7 @@ impl RelationKind {
     }
 }
 
-impl fmt::Display for RelationKind {
+impl fmt::Display for PrimitiveRelation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::OnCircle => "on a circle",
@@ -68,9 +68,9 @@ impl fmt::Display for RelationKind {
 
 /// The number of recovered relations of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RelationCount {
+pub struct PrimitiveRelationCount {
     /// The kind.
-    pub kind: RelationKind,
+    pub kind: PrimitiveRelation,
     /// The number.
     pub count: usize,
 }
@@ -83,7 +83,7 @@ pub struct Recovery {
     /// The rounding of the coordinates.
     pub rounding: Rounding,
     /// The relations that the rounding had destroyed, by kind; kinds without any are left out.
-    pub relations: Vec<RelationCount>,
+    pub relations: Vec<PrimitiveRelationCount>,
     /// The number of relations within the rounding that contradict others, and are left out.
     pub contradictory: usize,
     /// The number of primitives that moved.

@@ -5,7 +5,7 @@ use crate::recover::circles::{Round, at_radius};
 use crate::recover::features::{Feature, LocalAxis, features};
 use crate::recover::frames::{AxisUse, Frame, Member};
 use crate::recover::rounding::Rounding;
-use crate::recover::{Recovery, RelationCount, RelationKind};
+use crate::recover::{PrimitiveRelation, PrimitiveRelationCount, Recovery};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::{NodeId, PlacedPrimitive, Tree, TreeNode};
 use premio_kernel::motion::{Motion, MotionError};
@@ -50,7 +50,7 @@ pub(super) struct Placement<'t> {
     motions: Vec<Option<Motion>>,
     /// By leaf: the steps of its new motion, if it moves.
     transforms: Vec<Option<Transform>>,
-    relations: BTreeMap<RelationKind, usize>,
+    relations: BTreeMap<PrimitiveRelation, usize>,
     contradictory: usize,
 }
 
@@ -337,7 +337,10 @@ impl<'t> Placement<'t> {
             self.contradictory += 1;
             return;
         }
-        *self.relations.entry(RelationKind::OnCircle).or_default() += 1;
+        *self
+            .relations
+            .entry(PrimitiveRelation::OnCircle)
+            .or_default() += 1;
         for (i, x) in across.into_iter().zip(place) {
             coordinates.new[circle.member][i] = Some(x);
         }
@@ -365,7 +368,7 @@ impl<'t> Placement<'t> {
             tree: recovered,
             rounding,
             relations: counts
-                .map(|(kind, count)| RelationCount { kind, count })
+                .map(|(kind, count)| PrimitiveRelationCount { kind, count })
                 .collect(),
             contradictory: self.contradictory,
             moved,

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::rounding::Rounding;
-use super::{Recovery, RelationKind, recovered};
+use super::{PrimitiveRelation, Recovery, recovered};
 use crate::builder::{Builder, SolidId};
 use crate::primitive::Primitive;
 use crate::transform::{Transform, TransformStep};
@@ -131,7 +131,7 @@ fn assert_same(found: &Tree, meant: &Tree, what: &str) {
     }
 }
 
-fn count(recovery: &Recovery, kind: RelationKind) -> usize {
+fn count(recovery: &Recovery, kind: PrimitiveRelation) -> usize {
     let found = recovery.relations.iter().find(|r| r.kind == kind);
     found.map_or(0, |relation| relation.count)
 }
@@ -145,7 +145,7 @@ fn a_rounded_box_is_as_it_was_meant() {
         let recovery = recovered(&part(&pieces, &ODD, Some(decimals))).unwrap();
         assert_same(&recovery.tree, &meant, &format!("{decimals} decimals"));
         assert_eq!(recovery.contradictory, 0);
-        assert!(count(&recovery, RelationKind::Tangent) > 0);
+        assert!(count(&recovery, PrimitiveRelation::Tangent) > 0);
         let most = 0.5 * 3f64.sqrt() * 10f64.powi(-(decimals as i32));
         assert!(recovery.furthest <= most && recovery.furthest > 0.1 * most);
         let (builder, solid) = recovery.to_builder().unwrap();
@@ -168,7 +168,7 @@ fn balls_in_a_groove_lie_on_its_circle() {
     let hub = piece(cylinder("15", "8"), &[], ["0", "0", "-4"]);
     let pieces = [&[ring, hub][..], &balls].concat();
     let recovery = recovered(&part(&pieces, &ODD, Some(6))).unwrap();
-    assert_eq!(count(&recovery, RelationKind::OnCircle), 2);
+    assert_eq!(count(&recovery, PrimitiveRelation::OnCircle), 2);
     let leaves = placed(&recovery.tree);
     let inverse = leaves[0].motion.inverse();
     for ball in &leaves[2..] {
@@ -238,7 +238,7 @@ fn contradictory_relations_are_left_out() {
     let recovery = recovered(&part(&pieces, &ODD, Some(5))).unwrap();
     // Along x one end of the long block against both others, along y two of each pair, along z one
     // of two pairs: 2 + 2 + 6 + 2.
-    assert_eq!(count(&recovery, RelationKind::Coplanar), 12);
+    assert_eq!(count(&recovery, PrimitiveRelation::Coplanar), 12);
     assert_eq!(recovery.contradictory, 2);
     let leaves = placed(&recovery.tree);
     assert_eq!(leaves[1].primitive, block(["10.00001", "10", "5"]));

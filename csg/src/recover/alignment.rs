@@ -34,6 +34,10 @@ pub(super) struct Alignment {
 /// The error, relative to a number, of differences in f64.
 const PRECISION: f64 = 16.0 * f64::EPSILON;
 
+/// The number of next greater numbers with which a number is compared. Many primitives may have the
+/// same one, and neighbours connect them.
+const NEIGHBOURS: usize = 16;
+
 /// Two features within the rounding.
 #[derive(Debug, Clone)]
 struct Candidate {
@@ -77,7 +81,8 @@ pub(super) fn aligned(nodes: &[Node]) -> Alignment {
     alignment
 }
 
-/// The pairs of features of different nodes within the rounding, at least one of which may move.
+/// The pairs of neighbouring features of different nodes within the rounding, at least one of which
+/// may move.
 fn candidates(nodes: &[Node]) -> Vec<Candidate> {
     let all = nodes.iter().enumerate();
     let mut numbers: Vec<(f64, usize, &Feature)> = all
@@ -92,7 +97,7 @@ fn candidates(nodes: &[Node]) -> Vec<Candidate> {
     for (k, &(x, i, f)) in numbers.iter().enumerate() {
         let near = numbers[k + 1..].iter();
         let near = near.take_while(|(y, ..)| y - x <= 2.0 * widest + PRECISION * y.abs());
-        for &(y, j, g) in near {
+        for &(y, j, g) in near.take(NEIGHBOURS) {
             let error = nodes[i].error + nodes[j].error;
             if i != j && error > 0.0 && y - x <= error + PRECISION * y.abs() {
                 let positions = [i, j].map(|i| &nodes[i].position);
@@ -117,6 +122,8 @@ struct Components {
     possible: Vec<[f64; 2]>,
     /// By root: the position, if a node of the component is determined.
     determined: Vec<Option<Rational>>,
+    /// By root: the number of nodes.
+    sizes: Vec<usize>,
 }
 
 impl Components {
@@ -132,6 +139,7 @@ impl Components {
             offsets: vec![Rational::ZERO; nodes.len()],
             possible: nodes.iter().map(interval).collect(),
             determined: nodes.iter().map(determined).collect(),
+            sizes: vec![1; nodes.len()],
         }
     }
 
@@ -152,9 +160,15 @@ impl Components {
         let [c, d] = &candidate.offsets;
         // The position of root b relative to root a.
         let shift = (p + c) - (q + d);
-        if a == b {
-            return shift.is_zero();
+        match a == b {
+            true => shift.is_zero(),
+            false if self.sizes[a] < self.sizes[b] => self.attach(b, a, -shift),
+            false => self.attach(a, b, shift),
         }
+    }
+
+    /// Attaches root b to root a at a relative position; false if no position is possible then.
+    fn attach(&mut self, a: usize, b: usize, shift: Rational) -> bool {
         let by = to_f64(&shift);
         let [lo, hi] = self.possible[b].map(|x| x - by);
         let both = [self.possible[a][0].max(lo), self.possible[a][1].min(hi)];
@@ -167,6 +181,7 @@ impl Components {
             return false;
         }
         self.parents[b] = a;
+        self.sizes[a] += self.sizes[b];
         self.offsets[b] = shift;
         self.possible[a] = both;
         self.determined[a] = self.determined[a].take().or(theirs);

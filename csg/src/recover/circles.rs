@@ -66,6 +66,41 @@ impl Round<'_> {
         [own, touching].concat()
     }
 
+    /// Whether a distance is near the radius of a circle for the centre of another one.
+    fn is_near_circle(&self, other: &Self, distance: f64, error: f64) -> bool {
+        let r = other.size();
+        let is_near = |own: f64| {
+            [own, own + r, (own - r).abs()]
+                .iter()
+                .any(|radius| (radius - distance).abs() <= error)
+        };
+        match self.primitive {
+            Primitive::Torus { major, minor } => {
+                let [major, minor] = [major, minor].map(to_f64);
+                [major, major + minor, major - minor]
+                    .into_iter()
+                    .any(is_near)
+            }
+            Primitive::Cylinder { radius, .. } => is_near(to_f64(radius)),
+            _ => false,
+        }
+    }
+
+    /// The largest radius of a circle about its axis, without the radius of another one; none if it
+    /// has no such circle.
+    pub fn reach(&self) -> Option<f64> {
+        match self.primitive {
+            Primitive::Torus { major, minor } => Some(to_f64(&(major + minor))),
+            Primitive::Cylinder { radius, .. } => Some(to_f64(radius)),
+            _ => None,
+        }
+    }
+
+    /// The radius as a member of a circle.
+    pub fn size(&self) -> f64 {
+        self.radius().map_or(0.0, to_f64)
+    }
+
     /// The circle about its axis on which the centre of another one lies within the rounding, and
     /// which it does not cross along an axis of the frame.
     pub fn circle(&self, other: &Self) -> Option<Rational> {
@@ -78,6 +113,10 @@ impl Round<'_> {
         }
         let distance = across[0].hypot(across[1]);
         let error = errors[0].hypot(errors[1]);
+        // Nearly all pairs end here, without exact numbers.
+        if !self.is_near_circle(other, distance, error) {
+            return None;
+        }
         let circles = self.circles(other).into_iter();
         let off = |radius: &Rational| (to_f64(radius) - distance).abs();
         let near = circles.filter(|radius| !radius.is_zero() && off(radius) <= error);

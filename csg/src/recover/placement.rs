@@ -225,41 +225,73 @@ impl<'t> Placement<'t> {
 
     /// The members of a frame that lie on a circle about another one and are not placed by numbers.
     fn circles(&self, coordinates: &FrameCoordinates<'_>) -> Vec<OnCircle> {
-        let count = coordinates.frame.members.len();
         let mut found: Vec<OnCircle> = Vec::new();
+        let mut is_found = vec![false; coordinates.written.len()];
         for axis in 0..3 {
-            for centre in 0..count {
-                for member in (0..count).filter(|m| *m != centre) {
-                    let radius = self.radius_of_circle(coordinates, axis, centre, member);
-                    let is_new = found.iter().all(|c| c.member != member);
-                    if let (Some(radius), true) = (radius, is_new) {
-                        found.push(OnCircle {
-                            centre,
-                            member,
-                            axis,
-                            radius,
-                        });
-                    }
+            for circle in self.circles_about(coordinates, axis) {
+                if !std::mem::replace(&mut is_found[circle.member], true) {
+                    found.push(circle);
                 }
             }
         }
-        let moved: Vec<usize> = found.iter().map(|circle| circle.member).collect();
+        let numbers = [0, 1, 2].map(|axis| self.sorted_numbers(coordinates, axis, &is_found));
         found.retain(|circle| {
-            !moved.contains(&circle.centre) && !self.has_place(coordinates, circle, &moved)
+            !is_found[circle.centre] && !self.has_place(coordinates, circle, &numbers)
         });
         found
     }
 
-    fn radius_of_circle(
+    /// The members that lie on a circle about an axis.
+    fn circles_about(&self, coordinates: &FrameCoordinates<'_>, axis: usize) -> Vec<OnCircle> {
+        let all = 0..coordinates.written.len();
+        let rounds = all.filter_map(|k| Some((k, self.round(coordinates, axis, k)?)));
+        let mut rounds: Vec<(usize, Round<'_>)> = rounds.collect();
+        rounds.sort_by(|a, b| a.1.centre[0].total_cmp(&b.1.centre[0]));
+        let largest = rounds.iter().map(|r| r.1.size()).fold(0.0, f64::max);
+        let coarsest = rounds.iter().map(|r| r.1.errors[0]).fold(0.0, f64::max);
+        let mut found = Vec::new();
+        for (centre, round) in &rounds {
+            let Some(reach) = round.reach() else {
+                continue;
+            };
+            let reach = reach + largest + 2.0 * coarsest;
+            let start = rounds.partition_point(|r| r.1.centre[0] < round.centre[0] - reach);
+            let near = rounds[start..].iter();
+            let near = near.take_while(|r| r.1.centre[0] <= round.centre[0] + reach);
+            for (member, other) in near.filter(|r| r.0 != *centre) {
+                found.extend(round.circle(other).map(|radius| OnCircle {
+                    centre: *centre,
+                    member: *member,
+                    axis,
+                    radius,
+                }));
+            }
+        }
+        found.sort_by_key(|circle| (circle.centre, circle.member));
+        found
+    }
+
+    /// The numbers along an axis, in their order, of members that are on no circle.
+    fn sorted_numbers(
         &self,
         coordinates: &FrameCoordinates<'_>,
         axis: usize,
-        centre: usize,
-        member: usize,
-    ) -> Option<Rational> {
-        let centre = self.round(coordinates, axis, centre)?;
-        let member = self.round(coordinates, axis, member)?;
-        centre.circle(&member)
+        is_on_circle: &[bool],
+    ) -> Vec<f64> {
+        let others = (0..is_on_circle.len()).filter(|k| !is_on_circle[*k]);
+        let mut all: Vec<f64> = others
+            .flat_map(|k| self.numbers_of(coordinates, k, axis))
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    /// The numbers of a member along an axis.
+    fn numbers_of(&self, coordinates: &FrameCoordinates<'_>, k: usize, axis: usize) -> Vec<f64> {
+        let member = &coordinates.frame.members[k];
+        let own = &coordinates.written[k][axis];
+        let all = self.numbers(member.leaf, member.axes[axis]);
+        all.iter().map(|f| to_f64(&(own + &f.offset))).collect()
     }
 
     /// A member as a primitive of revolution about an axis of the frame.
@@ -297,21 +329,15 @@ impl<'t> Placement<'t> {
         &self,
         coordinates: &FrameCoordinates<'_>,
         circle: &OnCircle,
-        moved: &[usize],
+        others: &[Vec<f64>; 3],
     ) -> bool {
-        let members = &coordinates.frame.members;
-        let numbers = |k: usize, axis: usize| {
-            let own = &coordinates.written[k][axis];
-            let all = self.numbers(members[k].leaf, members[k].axes[axis]);
-            all.into_iter().map(move |f| to_f64(&(own + &f.offset)))
-        };
         let across = [(circle.axis + 1) % 3, (circle.axis + 2) % 3];
         across.iter().all(|&axis| {
-            let own: Vec<f64> = numbers(circle.member, axis).collect();
-            let others = (0..members.len()).filter(|k| !moved.contains(k));
-            others.into_iter().any(|k| {
-                let error = coordinates.errors[k][axis] + coordinates.errors[circle.member][axis];
-                numbers(k, axis).any(|x| own.iter().any(|y| (x - y).abs() <= error))
+            let error = 2.0 * coordinates.errors[circle.member][axis];
+            let own = self.numbers_of(coordinates, circle.member, axis);
+            own.iter().any(|x| {
+                let next = others[axis].partition_point(|y| *y < x - error);
+                others[axis].get(next).is_some_and(|y| *y <= x + error)
             })
         })
     }

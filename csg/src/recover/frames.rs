@@ -4,8 +4,8 @@ use crate::primitive::Primitive;
 use crate::recover::features::LocalAxis;
 use crate::tree::PlacedPrimitive;
 use nalgebra::{Matrix3, Vector3};
-use premio_kernel::motion::Motion;
-use premio_kernel::number::rational::Rational;
+use premio_kernel::motion::{Motion, RationalMatrix};
+use premio_kernel::number::rational::{Rational, to_f64};
 
 /// The angle, in radians, up to which directions are the same: rotations are exact, and those of
 /// f64 numbers differ by its precision.
@@ -51,76 +51,122 @@ pub(super) struct Frame {
     pub guests: Vec<Guest>,
 }
 
-/// The frames of primitives, that of most primitives first. Every primitive is a member of one.
-pub(super) fn frames(leaves: &[&PlacedPrimitive]) -> Vec<Frame> {
-    let mut frames: Vec<Frame> = Vec::new();
-    // Primitives with more axes determine frames that the others fit.
-    let order = |i: &usize| match leaves[*i].primitive {
-        Primitive::Block { .. } | Primitive::Wedge { .. } => 0,
-        Primitive::Sphere { .. } => 2,
-        _ => 1,
-    };
-    let mut all: Vec<usize> = (0..leaves.len()).collect();
-    all.sort_by_key(order);
-    for leaf in all {
-        let fits = |frame: &Frame| member(leaf, leaves[leaf], &frame.rotation);
-        let best = frames
-            .iter()
-            .enumerate()
-            .filter_map(|(k, frame)| Some((k, fits(frame)?)))
-            // The first of the largest.
-            .max_by_key(|(k, _)| (frames[*k].members.len(), std::cmp::Reverse(*k)));
-        match best {
-            Some((k, member)) => frames[k].members.push(member),
-            None => frames.extend(founded(leaf, leaves[leaf])),
+/// A primitive in f64: what decides which frames it fits.
+struct Pose<'t> {
+    placed: &'t PlacedPrimitive,
+    rotation: Matrix3<f64>,
+    origin: Vector3<f64>,
+    /// The radius of a ball about its origin that contains it.
+    reach: f64,
+}
+
+impl<'t> Pose<'t> {
+    fn new(placed: &'t PlacedPrimitive) -> Self {
+        let lengths = placed.primitive.lengths();
+        Self {
+            placed,
+            rotation: placed.motion.rotation_f64(),
+            origin: placed.motion.translation_f64(),
+            reach: lengths.into_iter().map(to_f64).sum(),
         }
     }
-    frames.sort_by_key(|frame| std::cmp::Reverse(frame.members.len()));
-    for k in 1..frames.len() {
-        let (before, rest) = frames.split_at_mut(k);
-        let leaves_before = before.iter().flat_map(|f| f.members.iter().map(|m| m.leaf));
-        let guests = leaves_before.filter_map(|i| guest(i, leaves[i], &rest[0].rotation));
-        rest[0].guests = guests.collect();
+
+    fn meets(&self, other: &Self) -> bool {
+        (self.origin - other.origin).norm() <= self.reach + other.reach
+    }
+
+    /// Its axes along those of a frame.
+    fn axes(&self, frame: &Matrix3<f64>) -> [Option<AxisUse>; 3] {
+        let local = self.rotation.transpose() * frame;
+        std::array::from_fn(|k| axis_along(&self.placed.primitive, &local.column(k).into()))
+    }
+}
+
+/// The leaves that share a frame.
+struct Group {
+    rotation: Matrix3<f64>,
+    /// The leaf whose rotation it has.
+    first: usize,
+    leaves: Vec<usize>,
+}
+
+/// The frames of primitives, that of most primitives first. Every primitive is a member of one.
+pub(super) fn frames(leaves: &[&PlacedPrimitive]) -> Vec<Frame> {
+    let poses: Vec<Pose<'_>> = leaves.iter().map(|placed| Pose::new(placed)).collect();
+    let groups = groups(&poses);
+    let mut frames: Vec<Frame> = Vec::with_capacity(groups.len());
+    for (k, group) in groups.iter().enumerate() {
+        frames.extend(frame(group, &groups[..k], &poses));
     }
     frames
 }
 
-/// The frame of a primitive's own rotation.
-fn founded(leaf: usize, placed: &PlacedPrimitive) -> Option<Frame> {
+/// The groups of primitives that share a frame, the largest first.
+fn groups(poses: &[Pose<'_>]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    // Primitives with more axes determine frames that the others fit.
+    let order = |i: &usize| match poses[*i].placed.primitive {
+        Primitive::Block { .. } | Primitive::Wedge { .. } => 0,
+        Primitive::Sphere { .. } => 2,
+        _ => 1,
+    };
+    let mut all: Vec<usize> = (0..poses.len()).collect();
+    all.sort_by_key(order);
+    for leaf in all {
+        let fits = |group: &Group| {
+            poses[leaf]
+                .axes(&group.rotation)
+                .iter()
+                .all(Option::is_some)
+        };
+        let fitting = (0..groups.len()).filter(|&k| fits(&groups[k]));
+        // The first of the largest.
+        match fitting.max_by_key(|&k| (groups[k].leaves.len(), std::cmp::Reverse(k))) {
+            Some(k) => groups[k].leaves.push(leaf),
+            None => groups.push(Group {
+                rotation: poses[leaf].rotation,
+                first: leaf,
+                leaves: vec![leaf],
+            }),
+        }
+    }
+    groups.sort_by_key(|group| std::cmp::Reverse(group.leaves.len()));
+    groups
+}
+
+/// The frame of a group, with the guests from groups before it that meet a member.
+fn frame(group: &Group, before: &[Group], poses: &[Pose<'_>]) -> Option<Frame> {
     let zero = Motion::identity().offset().clone();
-    let rotation = Motion::from_matrix(placed.motion.rotation_matrix(), zero)?;
-    let first = member(leaf, placed, &rotation)?;
+    let own = poses[group.first].placed.motion.rotation_matrix();
+    let rotation = Motion::from_matrix(own, zero)?;
+    let mut turns = OwnTurns::new(&rotation);
+    let members = group.leaves.iter();
+    let member = |&leaf: &usize| member(leaf, &poses[leaf], group, &mut turns);
+    let members = members.map(member).collect::<Option<Vec<Member>>>()?;
+    let others = before.iter().flat_map(|group| &group.leaves);
+    let guests = others.filter_map(|&leaf| {
+        let axes = poses[leaf].axes(&group.rotation);
+        let meets = || group.leaves.iter().any(|&k| poses[k].meets(&poses[leaf]));
+        let is_guest = axes.iter().any(Option::is_some) && meets();
+        is_guest.then_some(Guest { leaf, axes })
+    });
     Some(Frame {
+        guests: guests.collect(),
         rotation,
-        members: vec![first],
-        guests: Vec::new(),
+        members,
     })
 }
 
-/// The axes of a primitive along those of a frame; `None` if an axis of the frame has none.
-fn member(leaf: usize, placed: &PlacedPrimitive, rotation: &Motion) -> Option<Member> {
-    let axes = axes(placed, rotation);
-    let [Some(x), Some(y), Some(z)] = axes else {
+fn member(leaf: usize, pose: &Pose<'_>, group: &Group, turns: &mut OwnTurns<'_>) -> Option<Member> {
+    let [Some(x), Some(y), Some(z)] = pose.axes(&group.rotation) else {
         return None;
     };
     let axes = [x, y, z];
-    let turn = match own_turn(placed, rotation) {
+    let turn = match turns.relative_to_frame(&pose.placed.motion.rotation_matrix()) {
         Some(turn) => turn,
         None => turn(&axes)?,
     };
     Some(Member { leaf, axes, turn })
-}
-
-fn guest(leaf: usize, placed: &PlacedPrimitive, rotation: &Motion) -> Option<Guest> {
-    let axes = axes(placed, rotation);
-    let any = axes.iter().any(Option::is_some);
-    any.then_some(Guest { leaf, axes })
-}
-
-/// The axes of a primitive along those of a frame.
-fn axes(placed: &PlacedPrimitive, rotation: &Motion) -> [Option<AxisUse>; 3] {
-    let local = placed.motion.rotation_f64().transpose() * rotation.rotation_f64();
-    std::array::from_fn(|k| axis_along(&placed.primitive, &local.column(k).into()))
 }
 
 /// The axis of a primitive along a direction of its own frame.
@@ -142,15 +188,58 @@ fn axis_along(primitive: &Primitive, direction: &Vector3<f64>) -> Option<AxisUse
     }
 }
 
-/// The rotation of a primitive relative to a frame, if it brings axes to axes exactly.
-fn own_turn(placed: &PlacedPrimitive, rotation: &Motion) -> Option<Motion> {
-    let zero = || Motion::identity().offset().clone();
-    let own = Motion::from_matrix(placed.motion.rotation_matrix(), zero())?;
-    let relative = own.then(&rotation.inverse());
-    let matrix = relative.rotation_matrix();
-    let is_simple = matrix.iter().flatten().all(Rational::is_int);
-    is_simple.then_some(relative)
+/// The rotations of primitives relative to a frame. Most primitives have one of a few.
+struct OwnTurns<'f> {
+    inverse: Motion,
+    frame: &'f Motion,
+    known: Vec<OwnTurn>,
 }
+
+/// The rotation of a primitive relative to a frame.
+struct OwnTurn {
+    rotation: RationalMatrix,
+    /// None unless it brings axes to axes exactly.
+    turn: Option<Motion>,
+}
+
+impl<'f> OwnTurns<'f> {
+    fn new(frame: &'f Motion) -> Self {
+        Self {
+            inverse: frame.inverse(),
+            frame,
+            known: Vec::new(),
+        }
+    }
+
+    /// The relative rotation, if it brings axes to axes exactly.
+    fn relative_to_frame(&mut self, rotation: &RationalMatrix) -> Option<Motion> {
+        if let Some(known) = self.known.iter().find(|own| own.rotation == *rotation) {
+            return known.turn.clone();
+        }
+        let turn = self.relative(rotation);
+        if self.known.len() < KNOWN {
+            self.known.push(OwnTurn {
+                rotation: rotation.clone(),
+                turn: turn.clone(),
+            });
+        }
+        turn
+    }
+
+    fn relative(&self, rotation: &RationalMatrix) -> Option<Motion> {
+        if *rotation == self.frame.rotation_matrix() {
+            return Some(Motion::identity());
+        }
+        let own = Motion::from_matrix(rotation.clone(), Motion::identity().offset().clone())?;
+        let relative = own.then(&self.inverse);
+        let matrix = relative.rotation_matrix();
+        let is_simple = matrix.iter().flatten().all(Rational::is_int);
+        is_simple.then_some(relative)
+    }
+}
+
+/// The number of rotations that are remembered.
+const KNOWN: usize = 32;
 
 /// The rotation that brings a primitive's axes to those of a frame. Axes across that of a primitive
 /// of revolution may be any.

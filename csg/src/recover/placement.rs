@@ -83,6 +83,8 @@ impl<'t> Placement<'t> {
             let members = frames
                 .iter()
                 .flat_map(|f| f.members.iter().map(move |m| (f, m)));
+            // Without a rotation these are the coordinates outside.
+            let members = members.filter(|(frame, _)| !frame.rotation.is_identity());
             let local = |(frame, member): (&Frame, &Member)| {
                 let inverse = frame.rotation.inverse();
                 inverse.apply_vector(leaves[member.leaf].1.motion.offset())

@@ -4,7 +4,7 @@
 //! last digits are random. Where a person wrote them, most are short, also if one of them is
 //! 1.0000001.
 
-use premio_kernel::number::rational::{Rational, to_decimal, to_f64};
+use premio_kernel::number::rational::{Rational, to_f64};
 use std::fmt;
 
 /// The rounding of coordinates.
@@ -43,9 +43,9 @@ impl Rounding {
     /// The rounding of coordinates, if a program rounded them.
     pub fn new<'a>(coordinates: impl Iterator<Item = &'a Rational>) -> Option<Self> {
         let all: Vec<&Rational> = coordinates.filter(|x| !x.is_zero()).collect();
-        let decimals: Vec<u32> = all.iter().filter_map(|x| decimals(x)).collect();
-        let most = decimals.iter().copied().max()?;
-        if decimals.len() < all.len() || !DECIMALS.contains(&most) {
+        let decimals: Option<Vec<u32>> = all.iter().map(|x| decimals(x)).collect();
+        let most = decimals?.into_iter().max()?;
+        if !DECIMALS.contains(&most) {
             return None;
         }
         // A number of the largest magnitude has no digit beyond the sixth by chance only.
@@ -91,20 +91,23 @@ impl Rounding {
     }
 }
 
-/// The number of digits after the point of a finite decimal.
+/// The number of digits after the point of a decimal; `None` if there are more than a program's
+/// rounding leaves.
 fn decimals(x: &Rational) -> Option<u32> {
-    let text = to_decimal(x)?;
-    let after = text.split_once('.').map_or(0, |(_, after)| after.len());
-    u32::try_from(after).ok()
+    let denominator = u64::try_from(x.denominator()).ok()?;
+    (0..=*DECIMALS.end()).find(|digits| 10u64.pow(*digits) % denominator == 0)
 }
 
 /// A number in units of its last digit; `None` if there are further digits.
 fn in_units(x: &Rational, digits: i32) -> Option<i128> {
-    let scaled = x * Rational::from(10u8).pow(digits as isize);
-    let (numerator, denominator) = scaled.into_parts();
-    denominator
-        .is_one()
-        .then(|| i128::try_from(numerator).ok())?
+    let numerator = i128::try_from(x.numerator()).ok()?;
+    let denominator = i128::try_from(x.denominator()).ok()?;
+    let power = 10i128.checked_pow(digits.unsigned_abs())?;
+    let (above, below) = match digits >= 0 {
+        true => (numerator.checked_mul(power)?, denominator),
+        false => (numerator, denominator.checked_mul(power)?),
+    };
+    (above % below == 0).then_some(above / below)
 }
 
 /// The exponent of the first significant digit.

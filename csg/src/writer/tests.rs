@@ -148,6 +148,21 @@ fn any_turn_is_held_by_json() {
     assert!((matrix(&near) - matrix(&exact)).amax() < 1e-15, "{padl}");
 }
 
+/// Rotations by more than 90 degrees about y are given by the other angles.
+#[test]
+fn turns_beyond_a_right_angle_are_found_again() {
+    let padl = "PART = BLO(X=1, Y=2, Z=3) AT (ROTX=93.21, ROTY=184.059, ROTZ=145.776)";
+    let known = tree(padl, Format::Padl);
+    let (_, placed) = known.leaves().next().unwrap();
+    let step = TransformStep::Quaternion(placed.motion.quaternion());
+    assert_eq!(turns::about_axes(&step).len(), 3);
+    let mut moves = Transform::new();
+    for turn in turns::about_axes(&step) {
+        moves.push(TransformStep::about(turn.axis, turn.degrees)).unwrap();
+    }
+    assert!(*moves.motion() == placed.motion);
+}
+
 #[test]
 fn turns_by_decimals_about_three_axes_are_found_again() {
     let text = "P = BLO(X=1, Y=2, Z=3) AT (ROTX=12.5, ROTY=-3.75, ROTZ=100.125)";

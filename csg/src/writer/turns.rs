@@ -30,8 +30,11 @@ pub(super) fn about_axes(step: &TransformStep) -> Vec<AxisTurn> {
         return Vec::new();
     };
     let angles = angles(&motion.rotation_f64());
+    let [x, y, z] = angles;
+    // The other angles that give the same rotation. As decimals only one of them may be exact.
+    let others = [x + 180.0, 180.0 - y, z + 180.0];
     let exact = (0..=9)
-        .map(|digits| rounded(&angles, digits))
+        .flat_map(|digits| [rounded(&angles, digits), rounded(&others, digits)])
         .find(|turns| {
             let mut turned = Transform::new();
             let steps = turns.iter().cloned();

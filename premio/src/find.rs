@@ -1,23 +1,24 @@
 //! Finding a solid in pictures.
 
+mod picture_match;
+mod tracker;
+
+pub use picture_match::PictureMatch;
+pub use tracker::PartTracker;
+
 use crate::model::Model;
-use crate::picture::{PictureError, PictureFormat, draw_match};
 use crate::progress::{Cancelled, Progress};
 use crate::{Error, Result, Solid};
-use nalgebra::Isometry3;
 use premio_detect::{Detector, Grey};
 use premio_kernel::brep::Brep;
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_matching::image::{DownsampledImage, ImageFeatures, detector, downsampled};
 use premio_matching::matcher::Matcher;
-use premio_matching::output::explain::explained;
-use premio_matching::output::report::{MatchReport, MatchSeconds, Pose, ReportNames};
+use premio_matching::output::report::{MatchReport, MatchSeconds, ReportNames};
 use premio_matching::part::SoughtPart;
 use premio_matching::part::detectability_prior::DetectabilityPrior;
 use premio_matching::search::monitor::SearchStopped;
-use premio_matching::tracker::TrackResult;
-use premio_matching::verification::part_match::{PartMatch, SearchOptions, SearchResult};
-use premio_matching::verification::scoring::ScoreMeasures;
+use premio_matching::verification::part_match::{SearchOptions, SearchResult};
 use std::fmt;
 use std::time::Instant;
 
@@ -324,275 +325,6 @@ impl<'s> PartFinder<'s> {
     pub fn track(&self) -> PartTracker<'_> {
         let (finder, last) = (self, None);
         PartTracker { finder, last }
-    }
-}
-
-/// Follows a solid through the pictures of a sequence: from its last pose, or by a search of the
-/// whole picture where it is lost.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = block(6, 4, 2).evaluate()?;
-/// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-/// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-/// let finder = PartFinder::new(&solid)?;
-/// let mut tracker = finder.track();
-/// let found = tracker.next(&nothing, &camera)?;
-/// assert_eq!(found.report().anew, Some(true));
-/// # Ok::<(), premio::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct PartTracker<'f> {
-    finder: &'f PartFinder<'f>,
-    last: Option<Isometry3<f64>>,
-}
-
-impl PartTracker<'_> {
-    /// The solid in the next picture.
-    ///
-    /// # Errors
-    /// As [`PartFinder::find`]. The last pose stays.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(6, 4, 2).evaluate()?;
-    /// let small = Grey { width: 4, height: 3, levels: vec![99.0; 12] };
-    /// let camera = CameraFile::from_json(r#"{"K": [[800, 0, 32], [0, 800, 24], [0, 0, 1]]}"#)?;
-    /// let finder = PartFinder::new(&solid)?;
-    /// assert!(finder.track().next(&small, &camera).is_err());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn next(&mut self, picture: &Grey, camera: &CameraFile) -> Result<PictureMatch> {
-        let camera = camera.for_picture([picture.width, picture.height])?;
-        self.next_with(picture.clone(), camera, "")
-    }
-
-    /// The solid in the next picture, with the picture's name and the camera for its size.
-    ///
-    /// # Errors
-    /// The search was cancelled. The last pose stays.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(6, 4, 2).evaluate()?;
-    /// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let camera = camera.for_picture([64, 48])?;
-    /// let finder = PartFinder::new(&solid)?;
-    /// assert_eq!(finder.track().next_with(nothing, camera, "1.png")?.report().image, "1.png");
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn next_with(
-        &mut self,
-        picture: Grey,
-        camera: Pinhole,
-        name: &str,
-    ) -> Result<PictureMatch> {
-        let last = self.last;
-        let mut searched_anew = None;
-        let mut found = self.finder.find_with(picture, camera, name, |matcher| {
-            let TrackResult { result, anew } = matcher.next(last.as_ref())?;
-            searched_anew = Some(anew);
-            Ok(result)
-        })?;
-        found.report.anew = searched_anew;
-        let accepted = found.best().filter(|m| m.is_accepted());
-        self.last = accepted.map(|m: &PartMatch| m.pose);
-        Ok(found)
-    }
-
-    /// The pose in the last picture; none where the solid was not found.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(6, 4, 2).evaluate()?;
-    /// assert!(PartFinder::new(&solid)?.track().last_pose().is_none());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn last_pose(&self) -> Option<Pose> {
-        self.last.as_ref().map(Pose::from)
-    }
-}
-
-/// The result of a search for a solid in a picture.
-///
-/// # Examples
-///
-/// ```
-/// use premio::prelude::*;
-///
-/// let solid = block(6, 4, 2).evaluate()?;
-/// let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-/// let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-/// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-/// assert_eq!(found.probability(), 0.0);
-/// # Ok::<(), premio::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct PictureMatch {
-    grey: Grey,
-    features: ImageFeatures,
-    result: SearchResult,
-    report: MatchReport,
-}
-
-impl PictureMatch {
-    /// Whether the solid is there.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(!found.is_found());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn is_found(&self) -> bool {
-        self.report.found
-    }
-
-    /// The probability that the solid is there.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!((0.0..=1.0).contains(&found.probability()));
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn probability(&self) -> f64 {
-        self.report.probability
-    }
-
-    /// The pose: x_camera = R x + t; the likeliest one if the solid is not found.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(found.pose().is_none());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn pose(&self) -> Option<Pose> {
-        self.report.pose
-    }
-
-    /// The report (`premio.match/1`).
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(found.report().instances.is_empty());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn report(&self) -> &MatchReport {
-        &self.report
-    }
-
-    /// The likeliest match, with its correspondences.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(found.best().is_none());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn best(&self) -> Option<&PartMatch> {
-        self.result.best()
-    }
-
-    /// The evidence for and against the likeliest match, in words.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(!found.explained().is_empty());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn explained(&self) -> String {
-        explained(self.best(), &self.report)
-    }
-
-    /// The match with what its score is made of in its report (`measures`).
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?.with_measures();
-    /// // There are none without a match.
-    /// assert!(found.report().measures.is_none());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn with_measures(mut self) -> Self {
-        let best = self.result.best();
-        let straightness = self.report.straightness;
-        self.report.measures = best.map(|found| ScoreMeasures::new(found, straightness));
-        self
-    }
-
-    /// The bytes of the picture with the likeliest match drawn on it: found contours green, missed
-    /// ones red and dashed, their segments blue. None without a match.
-    ///
-    /// # Errors
-    /// The picture cannot be encoded.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// # use premio::prelude::*;
-    /// # let solid = block(6, 4, 2).evaluate()?;
-    /// # let nothing = Grey { width: 64, height: 48, levels: vec![99.0; 64 * 48] };
-    /// # let camera = CameraFile::from_json(r#"{"K": [[80, 0, 32], [0, 80, 24], [0, 0, 1]]}"#)?;
-    /// let found = PartFinder::new(&solid)?.find(&nothing, &camera)?;
-    /// assert!(found.overlay(premio::PictureFormat::Png)?.is_none());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    pub fn overlay(&self, format: PictureFormat) -> Result<Option<Vec<u8>>, PictureError> {
-        let draw = |best| draw_match(&self.grey, &self.features, best, format);
-        self.best().map(draw).transpose()
     }
 }
 

@@ -158,7 +158,9 @@ fn turns_beyond_a_right_angle_are_found_again() {
     assert_eq!(turns::about_axes(&step).len(), 3);
     let mut moves = Transform::new();
     for turn in turns::about_axes(&step) {
-        moves.push(TransformStep::about(turn.axis, turn.degrees)).unwrap();
+        moves
+            .push(TransformStep::about(turn.axis, turn.degrees))
+            .unwrap();
     }
     assert!(*moves.motion() == placed.motion);
 }

@@ -2,15 +2,14 @@
 //!
 //! A program that exports each primitive by itself rounds its position. What was coplanar, coaxial
 //! or tangent is then off by as much as the last digit. The rounding is known from the numbers
-//! ([`rounding`]). Primitives of one orientation share a frame ([`frames`]). Along the axes of this
-//! frame their planes, axes and centres, and these plus and minus radii, are numbers ([`features`]).
-//! Numbers that differ by no more than the rounding become equal ([`alignment`]). Centres at a
-//! radius from an axis are moved onto the circle ([`circles`]). No primitive moves further than the
+//! ([`rounding`]). Primitives of one orientation share a frame (`frames`). Along the axes of this
+//! frame their planes, axes and centres, and these plus and minus radii, are numbers (`features`).
+//! Numbers that differ by no more than the rounding become equal (`alignment`). Centres at a
+//! radius from an axis are moved onto the circle (`circles`). No primitive moves further than the
 //! rounding; a relation that contradicts others is left out.
 //!
-//! The relations are those of Langbein, Marshall and Martin ("Choosing consistent constraints for
-//! beautification of reverse engineered geometric models", 2004), restricted to what the rounding
-//! of a description explains.
+//! The relations are regularities in the sense of Langbein, Marshall and Martin (2004), restricted
+//! to what the rounding of a description explains.
 
 mod alignment;
 mod circles;

@@ -9,6 +9,6 @@
 pub(crate) mod axis_alignment;
 pub mod part_match;
 pub mod residuals;
-pub(crate) mod score_weights;
+pub mod score_weights;
 pub mod scoring;
 pub mod shape_evidence;

@@ -111,9 +111,8 @@ impl<'c> Canvas<'c> {
     fn draw(&mut self, RankedArc { rank, arc }: RankedArc<'c>) {
         let is_projected = matches!(arc, ImageArc::Projected { .. });
         let before = self.projected.near(&arc, self.tolerance);
-        // Arcs on supports are already disjoint.
-        let others = is_projected.then(|| self.supported.near(&arc, self.tolerance));
-        let others = others.into_iter().flatten();
+        let others = self.supported.near(&arc, self.tolerance);
+        let others = others.filter(|other| may_share(&arc, other));
         let covers = before.chain(others).collect::<Vec<_>>();
         for range in uncovered(&arc, &covers, self.tolerance) {
             let part = arc.part(range);
@@ -130,6 +129,17 @@ impl<'c> Canvas<'c> {
                 false => self.supported.insert(part),
             }
         }
+    }
+}
+
+/// Whether an arc may run along part of an arc on another support. Arcs on one support are already
+/// disjoint, and lines diverge. Two ellipses whose distance is little more than the tolerance may be
+/// closer over a part.
+fn may_share(arc: &ImageArc<'_>, other: &ImageArc<'_>) -> bool {
+    match arc {
+        ImageArc::Projected { .. } => true,
+        ImageArc::Elliptic { .. } => matches!(other, ImageArc::Elliptic { .. }),
+        ImageArc::Segment(_) => false,
     }
 }
 
@@ -374,6 +384,28 @@ mod tests {
         for length in lengths(&strokes) {
             assert!((length - 3.0 * PI).abs() < 1e-9, "{length}");
         }
+    }
+
+    /// The rims of a cylinder that is nearly seen along its axis: 6e-6 apart along y, and closer than
+    /// 1e-6 where the angle's sine is at most 1/6.
+    #[test]
+    fn circles_a_little_apart_share_what_runs_together() {
+        let circle = |y: f64, range| ImageArc::Elliptic {
+            ellipse: ImageEllipse {
+                centre: Point2::new(0.0, y),
+                major: Vector2::new(1.0, 0.0),
+                ratio: 1.0,
+            },
+            range,
+        };
+        let arcs = vec![
+            drawn(circle(0.0, [0.0, TAU]), true),
+            drawn(circle(6e-6, [-0.3, 0.3]), false),
+        ];
+        let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
+        assert!((visible - TAU).abs() < 1e-9);
+        let shared = (1.0f64 / 6.0).asin();
+        assert!((hidden - 2.0 * (0.3 - shared)).abs() < 1e-4, "{hidden}");
     }
 
     /// The halves of y = x³ over [-1, 1] and [0, 2] share [0, 1].

@@ -167,10 +167,12 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
             false => covered.extend(others.iter().flat_map(|other| search.stretches(other))),
         }
     }
-    covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut free = Vec::new();
     let mut from = lo;
-    for [start, end] in covered {
+    for [start, end] in united(covered) {
+        if is_touch(arc, [start, end], tolerance) {
+            continue;
+        }
         if from < start {
             free.push([from, start]);
         }
@@ -180,6 +182,26 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
         free.push([from, hi]);
     }
     free
+}
+
+/// Ranges in order, those that meet united.
+fn united(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for [start, end] in ranges {
+        match all.last_mut() {
+            Some(last) if start <= last[1] => last[1] = last[1].max(end),
+            _ => all.push([start, end]),
+        }
+    }
+    all
+}
+
+/// Whether a covered range of an arc on a support is no longer than where curves cross or touch: the
+/// arc stays whole there.
+fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
+    let is_supported = !matches!(arc, ImageArc::Projected { .. });
+    is_supported && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
 }
 
 /// The fractions between two stops at which an arc is compared with another.

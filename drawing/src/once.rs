@@ -3,7 +3,8 @@
 //! Arcs are ranked: visible ones before hidden ones, and boundaries before limbs before smooth
 //! edges. On a supporting line or ellipse the arcs of one rank are united, and the coverage of
 //! earlier ranks is subtracted. Projected curves have no such support: each of their arcs is drawn
-//! where no earlier arc runs.
+//! where no earlier arc runs. So is an arc of an ellipse where another ellipse runs along it for
+//! longer than a tangency.
 
 use super::image_arc::ImageArc;
 use super::image_arcs::DrawnArc;

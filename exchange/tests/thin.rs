@@ -100,6 +100,13 @@ fn a_bore_that_breaks_through_within_the_resolution_is_refused() {
     }
 }
 
+/// The same of a half ball: its circle overlaps the edge.
+#[test]
+fn a_half_ball_that_breaks_through_within_the_resolution_is_refused() {
+    let text = "PART = BLO(X=10, Y=8, Z=6) DIF SPH(R=2) AT (MOVX=1.99999999989, MOVY=4, MOVZ=6)";
+    assert_refused_in_millimetres(text, Thin::Overlap, 1.1e-10, 1e-10);
+}
+
 /// Half the sphere's area on either side, and its section times the displacement.
 #[test]
 fn a_thin_wall_is_refused() {

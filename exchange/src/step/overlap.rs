@@ -50,10 +50,7 @@ pub(super) fn overlapping_edges(
                 there.iter().flat_map(pair)
             });
         let distinct = pairs.filter(|(a, b)| !std::ptr::eq(a.edge, b.edge));
-        let mut overlaps = distinct.filter_map(|(a, b)| {
-            let v = &seamed.points[a.vertex];
-            a.overlap(b.edge, surface, v, tolerances)
-        });
+        let mut overlaps = distinct.filter_map(|(a, b)| a.overlap(b.edge, surface, tolerances));
         overlaps.next()
     })
 }
@@ -61,7 +58,8 @@ pub(super) fn overlapping_edges(
 /// An edge of a face at one of its ends.
 struct LeavingEdge<'s> {
     edge: &'s SeamedEdge<'s>,
-    vertex: usize,
+    /// The point of the vertex. Loops that touch may have a vertex each there.
+    vertex: Point3<f64>,
     is_start: bool,
 }
 
@@ -73,12 +71,16 @@ fn leaving_edges<'s>(seamed: &'s TwoManifold<'_>, face: &SeamedFace) -> Vec<Leav
     let ends = |edge: &'s SeamedEdge<'s>| {
         [true, false].map(|is_start| LeavingEdge {
             edge,
-            vertex: edge.ends[usize::from(!is_start)],
+            vertex: seamed.points[edge.ends[usize::from(!is_start)]],
             is_start,
         })
     };
     let mut leaving: Vec<LeavingEdge<'s>> = edges.flat_map(ends).collect();
-    leaving.sort_by_key(|leaving| leaving.vertex);
+    leaving.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|leaving| leaving.vertex);
+        let by = |i: usize| a[i].total_cmp(&b[i]);
+        by(0).then(by(1)).then(by(2))
+    });
     leaving
 }
 
@@ -88,7 +90,6 @@ impl LeavingEdge<'_> {
         &self,
         other: &SeamedEdge<'_>,
         surface: &Surface,
-        vertex: &Point3<f64>,
         tolerances: &Tolerances,
     ) -> Option<NearEdges> {
         let certain = CERTAIN * tolerances.resolution.max(tolerances.crossing);
@@ -100,7 +101,11 @@ impl LeavingEdge<'_> {
                 continue;
             };
             let side = usize::from(offset < 0.0);
-            sides[side].add(&p, offset.abs(), (p - vertex).norm() > tolerances.vertex);
+            sides[side].add(
+                &p,
+                offset.abs(),
+                (p - self.vertex).norm() > tolerances.vertex,
+            );
             if offset.abs() > certain {
                 return sides[1 - side].overlap(tolerances.crossing);
             }

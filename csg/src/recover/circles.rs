@@ -62,7 +62,7 @@ impl Round<'_> {
             _ => Vec::new(),
         };
         let touching = own.iter().flat_map(|radius| [radius + r, radius - r]);
-        let touching: Vec<Rational> = touching.map(distance).collect();
+        let touching: Vec<Rational> = touching.map(magnitude).collect();
         [own, touching].concat()
     }
 
@@ -101,8 +101,8 @@ impl Round<'_> {
         self.radius().map_or(0.0, to_f64)
     }
 
-    /// The circle about its axis on which the centre of another one lies within the rounding, and
-    /// which it does not cross along an axis of the frame.
+    /// The radius of the circle on which the centre of another one lies within the rounding; none if
+    /// the centre is level with the axis, where the numbers of the frame determine it.
     pub fn circle(&self, other: &Self) -> Option<Rational> {
         let errors: [f64; 3] = std::array::from_fn(|i| self.errors[i] + other.errors[i]);
         let across: [f64; 2] = std::array::from_fn(|i| other.centre[i] - self.centre[i]);
@@ -124,8 +124,8 @@ impl Round<'_> {
     }
 }
 
-/// A length without its sign.
-fn distance(x: Rational) -> Rational {
+/// The absolute value.
+fn magnitude(x: Rational) -> Rational {
     match x < Rational::ZERO {
         true => -x,
         false => x,

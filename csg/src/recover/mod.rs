@@ -5,8 +5,9 @@
 //! ([`rounding`]). Primitives of one orientation share a frame (`frames`). Along the axes of this
 //! frame their planes, axes and centres, and these plus and minus radii, are numbers (`features`).
 //! Numbers that differ by no more than the rounding become equal (`alignment`). Centres at a
-//! radius from an axis are moved onto the circle (`circles`). No primitive moves further than the
-//! rounding; a relation that contradicts others is left out.
+//! radius from an axis are moved onto the circle (`circles`). A primitive moves along an axis by no
+//! more than the error of its coordinate there, and onto a circle by no more than twice that. A
+//! relation that contradicts others is left out.
 //!
 //! The relations are regularities in the sense of Langbein, Marshall and Martin (2004), restricted
 //! to what the rounding of a description explains.

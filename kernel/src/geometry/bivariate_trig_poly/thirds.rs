@@ -73,11 +73,41 @@ impl<N: Float> BivariateTrigPoly<N> {
             let near = sum.abs() + half[1] * reaches.0[order + 1][i];
             near.min(reaches.0[order][i])
         };
-        let bound = |k: usize| (0..5).map(|i| rows[k][i] * row(3 - k, i)).sum();
+        let bound = |k: usize| -> N { (0..5).map(|i| rows[k][i] * row(3 - k, i)).sum() };
+        let along_section = |k: usize| self.near_section(k, 3 - k, &across, half[0], reaches);
         CellPartials {
-            thirds: Thirds([0, 1, 2, 3].map(bound)),
+            thirds: Thirds([
+                bound(0).min(along_section(0)),
+                bound(1).min(along_section(1)),
+                bound(2),
+                bound(3),
+            ]),
             partials: partials(&self.0, &bx, &by),
         }
+    }
+
+    /// A bound of a derivative, k times by the first angle and n times by the second, for all second
+    /// angles and for first angles within `half` of one where the derivatives of the five functions
+    /// are `across`. Taylor's theorem, about the section at that angle: surfaces that nearly touch
+    /// along it cancel there row by row.
+    fn near_section(
+        &self,
+        k: usize,
+        n: usize,
+        across: &[[N; 5]; 4],
+        half: N,
+        reaches: &Reaches<N>,
+    ) -> N {
+        let degree = degree::<N>();
+        let section = |k: usize| -> N {
+            let entry = |j: usize| (0..5).map(|i| self.0[i][j] * across[k][i]).sum::<N>();
+            let terms = (0..5).map(|j| entry(j).abs() * degree[j].powi(n as i32));
+            terms.sum()
+        };
+        let rest: N = (0..5)
+            .map(|i| degree[i].powi(k as i32 + 2) * reaches.0[n][i])
+            .sum();
+        section(k) + half * (section(k + 1) + N::HALF * half * rest)
     }
 }
 
@@ -128,6 +158,24 @@ mod tests {
             2.0 * x.cos() * c2y + 12.0 * s2x * y.sin(),
             x.sin() * (2.0 - s2y) - 24.0 * c2x * y.cos(),
         ]
+    }
+
+    /// A sphere next to one inscribed in the tube of a torus, on the torus.
+    #[test]
+    fn thirds_of_surfaces_that_nearly_touch_are_as_small_as_their_distance() {
+        let (major, minor, off) = (20.0, 5.0, 1e-6);
+        let form = BivariateTrigPoly::interpolate(|u: f64, v: f64| {
+            let arm = major + minor * v.cos();
+            let (x, y, z) = (arm * u.cos(), arm * u.sin(), minor * v.sin());
+            (x - major - off).powi(2) + y * y + z * z - minor * minor
+        });
+        let reaches = form.reaches();
+        let half = 1e-5;
+        for v in (0..10).map(|k| 0.6 * f64::from(k)) {
+            let Thirds(bounds) = form.partials_about([0.0, v], [half, 1.0], &reaches).thirds;
+            // f_yyy = 2 minor off sin y at x = 0.
+            assert!(bounds[0] < 2.5 * minor * off, "{bounds:?}");
+        }
     }
 
     #[test]

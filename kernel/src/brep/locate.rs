@@ -134,7 +134,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         for k in 0..WALKS {
             match self.attempt(p, k) {
                 Outcome::Found(place) => return place,
-                // Only endless paths, and closed ones through an arc, end here.
+                // Only endless paths end here.
                 Outcome::Nothing => return PointLocation::Outside,
                 Outcome::Unclear => {}
             }
@@ -187,11 +187,16 @@ impl<'a, N: Float> FaceLocator<'a, N> {
     /// run along it.
     fn spherical(&self, sphere: &Sphere<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
         let (centre, target) = (&sphere.frame.origin, self.target(k / 2));
+        // The path passes through the target. If nothing was found, the target was missed.
+        let through_target = |from: &Point3<N>| {
+            let walk = SurfacePath::great_circle(centre, from, &target);
+            match walk.map(|walk| self.take(&walk)) {
+                None | Some(Outcome::Nothing) => Outcome::Unclear,
+                Some(decided) => decided,
+            }
+        };
         if k.is_multiple_of(2) {
-            return match SurfacePath::great_circle(centre, p, &target) {
-                Some(walk) => self.take(&walk),
-                None => Outcome::Unclear,
-            };
+            return through_target(p);
         }
         let tangent = Frame::about(*p, (p - centre).unit());
         let (sin, cos) = turn.sin_cos();
@@ -204,12 +209,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             Outcome::Nothing => {}
             decided => return decided,
         }
-        let corner = leg.point(sphere.radius);
-        match SurfacePath::great_circle(centre, &corner, &target).map(|walk| self.take(&walk)) {
-            // The path passes through the target. If nothing was found, the target was missed.
-            None | Some(Outcome::Nothing) => Outcome::Unclear,
-            Some(decided) => decided,
-        }
+        through_target(&leg.point(sphere.radius))
     }
 
     /// A ruling; after the first attempts from another point of the parallel.

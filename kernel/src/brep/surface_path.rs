@@ -440,26 +440,44 @@ impl<N: Float> SurfacePath<N> {
                 .filter(|t| t.lies_in(arc.range))
                 .for_each(|t| root(t, true));
         }
+        let mut lost = None;
         for &range in ranges {
+            let mut count = 0_u32;
+            let mut counted = |t: N, simple: bool| {
+                count += 1;
+                root(t, simple);
+            };
             match self.branch {
                 Branch::Level(c, _) => {
-                    surface_roots(
-                        arc.curve,
-                        range,
-                        &Surface::Cylinder(c),
-                        resolution,
-                        &mut root,
-                    );
+                    let upright = Surface::Cylinder(c);
+                    surface_roots(arc.curve, range, &upright, resolution, &mut counted);
                 }
                 _ => {
                     let section = SectionPlane {
                         point: &self.start,
                         normal: &self.normal,
                     };
-                    section_roots(arc.curve, range, section, resolution, &mut root);
+                    section_roots(arc.curve, range, section, resolution, &mut counted);
                 }
             }
+            if self.has_lost_a_root(arc.curve, range, count, resolution) {
+                lost = Some(range[0]);
+            }
         }
+        if let Some(t) = lost {
+            found(N::ZERO, t, CrossingSense::Unclear);
+        }
+    }
+
+    /// Whether an arc ends on another side of the section than `roots` changes of side allow. Along
+    /// a curve that runs within its rounding error of the section, roots can be lost.
+    fn has_lost_a_root(&self, curve: &Curve<N>, range: [N; 2], roots: u32, resolution: N) -> bool {
+        if !matches!(curve, Curve::Toric(_) | Curve::Quartic(_)) {
+            return false;
+        }
+        let [first, last] = range.map(|t| self.off(&curve.point(t)));
+        let is_clear = first.abs().is_beyond(resolution) && last.abs().is_beyond(resolution);
+        is_clear && (first * last).is_below_zero() == roots.is_multiple_of(2)
     }
 
     /// The line of a straight path in a direction.

@@ -111,8 +111,8 @@ pub enum EvaluationError {
 }
 
 impl EvaluationError {
-    /// Whether extended precision may succeed where f64 failed.
-    pub(super) fn is_of_doubles(&self) -> bool {
+    /// Whether more bits may succeed where these failed.
+    pub(super) fn is_of_rounding(&self) -> bool {
         match self {
             Self::Intersection(_)
             | Self::AmbiguousEdgeOrder { .. }
@@ -122,11 +122,9 @@ impl EvaluationError {
             | Self::InvalidBoundary(_)
             | Self::Contradiction { .. }
             | Self::NearCylinder { .. }
-            | Self::Resolution { .. } => true,
-            Self::Size
-            | Self::TooFarFromOrigin { .. }
             | Self::UnprovenCoincidence { .. }
-            | Self::EntityLimit { .. } => false,
+            | Self::Resolution { .. } => true,
+            Self::Size | Self::TooFarFromOrigin { .. } | Self::EntityLimit { .. } => false,
         }
     }
 }

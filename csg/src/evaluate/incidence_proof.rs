@@ -16,7 +16,7 @@ use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::{Compare, FINEST_RESOLUTION, Predicates};
+use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::rational::Rational;
 use premio_kernel::proof::{AlgebraicPoint, Polynomial, ZeroTest, deflated};
 use std::cell::OnceCell;
@@ -56,7 +56,7 @@ pub(super) fn prove<N: Float>(
         let (point, carriers) = (corner.point, &corner.carriers);
         let incidence = Incidence::new(&forms, carriers, &point, predicates);
         if !incidence.is_simple() {
-            let reach = predicates.resolution::<N>() / N::from_f64(FINEST_RESOLUTION.sqrt());
+            let reach = predicates.resolution::<N>() * N::from_f64(tangency::<N>());
             let near = Neighbourhood {
                 place: &point,
                 reach,
@@ -181,15 +181,19 @@ impl<'f> Incidence<'f> {
 /// The number of attempts to find a point; each adds polynomials by deflation.
 const DEFLATIONS: usize = 3;
 
-/// Whether an angle is zero to the precision with which 237 bits give points of tangency: the
-/// square root of the resolution.
+/// The precision of points of tangency, in multiples of the resolution.
+fn tangency<N: Float>() -> f64 {
+    N::TANGENCY / N::FINEST_RESOLUTION
+}
+
+/// Whether an angle is zero to the precision with which points of tangency are known.
 fn is_flat<N: Float>(angle: N) -> bool {
-    angle.is_within(N::from_f64(FINEST_RESOLUTION.sqrt()))
+    angle.is_within(N::from_f64(N::TANGENCY))
 }
 
 /// Whether a vector to a point is zero, to the same precision.
 fn is_there<N: Float>(way: &Vector3<N>, predicates: &Predicates) -> bool {
-    predicates.within(way.length() * N::from_f64(FINEST_RESOLUTION.sqrt()))
+    predicates.within(way.length() / N::from_f64(tangency::<N>()))
 }
 
 /// The carriers that must contain a piece of a curve.

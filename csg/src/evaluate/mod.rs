@@ -22,6 +22,7 @@
 //! | `close_calls` | the close calls of which it is not yet known whether they matter |
 //! | `relevance` | the close calls on which the boundary depends |
 //! | `face_verification` | every face checked against the tree |
+//! | `evaluation` | the result |
 //!
 //! The kernel assembles edges to loops, faces, shells and solids.
 
@@ -32,6 +33,7 @@ mod distinct_surfaces;
 mod edge_candidates;
 mod edge_classification;
 mod error;
+mod evaluation;
 mod exact_coefficients;
 mod face_verification;
 mod halfspaces;
@@ -46,29 +48,29 @@ mod vanished;
 mod vertices;
 
 pub use error::EvaluationError;
+pub use evaluation::Evaluation;
 
 use self::arrangement::Arrangement;
 use self::carrier_intersections::Arranged;
 use self::edge_candidates::EdgeCandidate;
+use self::evaluation::Evaluated;
 use self::halfspaces::HalfSpaceModel;
 use self::membership::Membership;
 use self::relevance::CloseCallFilter;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
-use premio_kernel::brep::bounding_box::bounds;
-use premio_kernel::brep::check::{Violation, check, worst_gap};
-use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
+use premio_kernel::brep::check::{check, worst_gap};
+use premio_kernel::brep::face_integrals::FaceIntegrals;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
+use premio_kernel::number::double_double::F106;
 use premio_kernel::number::extended::F237;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{
-    CloseCall, CoincidencePolicy, Compare, DecisionStats, FINEST_RESOLUTION, Predicates,
-    RELATIVE_RESOLUTION, ROUNDING,
+    CloseCall, CoincidencePolicy, Compare, Predicates, RELATIVE_RESOLUTION,
 };
-use std::sync::OnceLock;
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -98,7 +100,7 @@ impl EvaluationOptions {
 /// The arithmetic in which a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// f64, and 237 bits where f64 is inconclusive.
+    /// f64, and 106 or 237 bits where fewer are inconclusive.
     #[default]
     Filtered,
     /// 237 bits; no decision is made in f64.
@@ -108,154 +110,15 @@ pub enum Arithmetic {
 /// The default limit on curves and points of curves between the surfaces of a part.
 pub const MAX_ENTITIES: usize = 1 << 23;
 
-/// The boundary of a tree, with the statistics of its decisions.
-#[derive(Debug)]
-pub struct Evaluation {
-    /// The boundary.
-    pub brep: Brep,
-    /// How the decisions were made.
-    pub decisions: DecisionStats,
-    /// The resolution used, in the part's unit.
-    pub resolution: f64,
-    /// A box that contains the part.
-    pub bounds: Aabb,
-    /// The integrals from which the mass properties are computed.
-    integrals: Integrals,
-    /// The resolution at which f64 gives the same boundary, if it does.
-    view_resolution: Option<f64>,
-    /// Computed on the first request: in extended precision it takes longer than the boundary.
-    mass: OnceLock<Mass>,
-}
-
-/// The numbers from which a boundary was computed.
-#[derive(Debug)]
-enum Integrals {
-    /// f64 values.
-    Doubles(FaceIntegrals),
-    /// Extended precision: the boundary before it was rounded.
-    Wide(Box<WideBoundary>),
-}
-
-/// A boundary in extended precision, and its integrals.
-#[derive(Debug)]
-struct WideBoundary {
-    brep: Brep<F237>,
-    measures: FaceIntegrals<F237>,
-}
-
-impl Evaluation {
-    /// The resolution for views of the boundary, which are computed in f64. `None` if f64 does not
-    /// give this boundary: surfaces rounded to f64 may coincide although the exact ones do not.
-    pub fn view_resolution(&self) -> Option<f64> {
-        self.view_resolution
-    }
-
-    /// The resolution that f64 supports for the boundary, however finely it was evaluated.
-    pub fn f64_resolution(&self) -> f64 {
-        let known = self.view_resolution.unwrap_or(self.resolution);
-        known.max(ROUNDING * self.bounds.diagonal())
-    }
-
-    /// The greatest distance between entities that coincide by the resolution; zero if none of them
-    /// was a close call.
-    pub fn greatest_coincidence(&self) -> f64 {
-        let distances = self.decisions.close_calls.iter().map(|c| c.distance.abs());
-        let coincident = distances.filter(|d| d.is_within(self.resolution));
-        coincident.fold(0.0, f64::max)
-    }
-
-    /// The volume, the area and the centroid.
-    pub fn mass(&self) -> Mass {
-        *self.mass.get_or_init(|| match &self.integrals {
-            Integrals::Doubles(measures) => measures.mass(&self.brep),
-            Integrals::Wide(wide) => wide.measures.mass(&wide.brep),
-        })
-    }
-
-    /// The bounding box of the boundary, to rounding.
-    pub fn tight_bounds(&self) -> Aabb {
-        match &self.integrals {
-            Integrals::Doubles(_) => bounds(&self.brep),
-            Integrals::Wide(wide) => bounds(&wide.brep),
-        }
-    }
-
-    /// The rules that the boundary breaks.
-    pub fn violations(&self) -> Vec<Violation> {
-        match &self.integrals {
-            Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
-            Integrals::Wide(wide) => {
-                let resolution = F237::from_f64(self.resolution);
-                check(&wide.brep, &wide.measures, resolution)
-            }
-        }
-    }
-}
-
-/// An evaluation in one precision.
-struct Evaluated<N: Float> {
-    brep: Brep<N>,
-    measures: FaceIntegrals<N>,
-    decisions: DecisionStats,
-    resolution: f64,
-    bounds: Aabb,
-}
-
-impl<N: Float> Evaluated<N> {
-    /// The evaluation of the empty tree.
-    fn empty() -> Self {
-        let brep = Brep::default();
-        Self {
-            measures: FaceIntegrals::new(&brep),
-            brep,
-            decisions: Predicates::new(0.0).decisions(),
-            resolution: 0.0,
-            bounds: Aabb::EMPTY,
-        }
-    }
-}
-
-impl From<Evaluated<f64>> for Evaluation {
-    fn from(known: Evaluated<f64>) -> Self {
-        Self {
-            brep: known.brep,
-            decisions: known.decisions,
-            resolution: known.resolution,
-            bounds: known.bounds,
-            integrals: Integrals::Doubles(known.measures),
-            view_resolution: Some(known.resolution),
-            mass: OnceLock::new(),
-        }
-    }
-}
-
-impl From<Evaluated<F237>> for Evaluation {
-    fn from(known: Evaluated<F237>) -> Self {
-        let mut decisions = known.decisions;
-        // All of them took more bits than f64 has.
-        decisions.refined += std::mem::take(&mut decisions.filtered);
-        Self {
-            brep: known.brep.to_f64(),
-            decisions,
-            resolution: known.resolution,
-            bounds: known.bounds,
-            integrals: Integrals::Wide(Box::new(WideBoundary {
-                brep: known.brep,
-                measures: known.measures,
-            })),
-            view_resolution: None,
-            mass: OnceLock::new(),
-        }
-    }
-}
-
-/// The maximum number of primitives of a tree that is evaluated in extended precision if f64 is
-/// inconclusive. That takes some hundred times as long.
-const FEW: usize = 64;
+/// The maximum numbers of primitives of a tree that is evaluated in 106 bits, and in 237 bits, if
+/// fewer bits are inconclusive. That takes some ten times, and some hundred times, as long as f64.
+const FEW_IN_106_BITS: usize = 1024;
+const FEW_IN_237_BITS: usize = 64;
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
-/// It is evaluated in f64, and if f64 is inconclusive, in 237 bits with the same resolution.
+/// It is evaluated in f64, and if f64 is inconclusive, with the same resolution in 106 bits, and at
+/// last in 237 bits. Exact evaluation starts with 106 bits.
 ///
 /// # Errors
 /// The numbers, the distance from the origin, the resolution or the number of entities is beyond a
@@ -263,48 +126,88 @@ const FEW: usize = 64;
 /// supported, or the computed boundary contradicts itself or the tree.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
-        (CoincidencePolicy::Exact, _) => return Ok(seen(tree, options, finely(tree, options)?)),
-        (_, Arithmetic::Extended) => return Ok(seen(tree, options, widely(tree, options)?)),
-        (_, Arithmetic::Filtered) => {}
+        (CoincidencePolicy::Exact, Arithmetic::Filtered) => exactly(tree, options),
+        (CoincidencePolicy::Exact, Arithmetic::Extended) => {
+            let known = finely::<F237>(tree, options)?;
+            Ok(seen(tree, options, known.into()))
+        }
+        (CoincidencePolicy::ByResolution, Arithmetic::Extended) => {
+            let known = widely::<F237>(tree, options)?;
+            Ok(seen(tree, options, known.into()))
+        }
+        (CoincidencePolicy::ByResolution, Arithmetic::Filtered) => by_resolution(tree, options),
     }
-    match evaluated::<f64>(tree, options) {
+}
+
+/// Evaluates in f64, and where that is inconclusive, in more and more bits.
+fn by_resolution(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    let error = match evaluated::<f64>(tree, options) {
         Ok(mut known) => {
             known
                 .decisions
                 .close_calls
                 .extend(vanished(tree, &known, options.noise));
-            Ok(known.into())
+            return Ok(known.into());
         }
-        Err(error) if error.is_of_doubles() && tree.leaves().count() <= FEW => {
-            widely(tree, options).map(Evaluation::from)
-        }
-        Err(error) => Err(error),
+        Err(error) => error,
+    };
+    let error = match is_worth(&error, tree, FEW_IN_106_BITS) {
+        true => match widely::<F106>(tree, options) {
+            Ok(known) => return Ok(known.into()),
+            Err(error) => error,
+        },
+        false => error,
+    };
+    match is_worth(&error, tree, FEW_IN_237_BITS) {
+        true => widely::<F237>(tree, options).map(Evaluation::from),
+        false => Err(error),
     }
 }
 
-/// The close call because of which a part is empty in f64 but a solid in 237 bits.
+/// Evaluates with the finest resolution, and proves every coincidence. More bits are needed where a
+/// proof fails, or where a point is not known well enough for one.
+fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    let known = match finely::<F106>(tree, options) {
+        Ok(known) if known.decisions.coincident == 0 => known.into(),
+        Ok(_) => finely::<F237>(tree, options)?.into(),
+        Err(error) if error.is_of_rounding() => finely::<F237>(tree, options)?.into(),
+        Err(error) => return Err(error),
+    };
+    Ok(seen(tree, options, known))
+}
+
+/// Whether more bits may succeed on a tree, and do so in reasonable time.
+fn is_worth(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
+    error.is_of_rounding() && tree.leaves().count() <= few
+}
+
+/// The close call because of which a part is empty in f64 but a solid in 106 bits.
 fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<CloseCall> {
     let is_asked = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
-        && tree.leaves().count() <= FEW;
-    let fine = is_asked.then(|| finely(tree, &EvaluationOptions::default()).ok())??;
+        && tree.leaves().count() <= FEW_IN_106_BITS;
+    let options = EvaluationOptions::default();
+    let fine = is_asked.then(|| finely::<F106>(tree, &options).ok())??;
     let written = noise.unwrap_or(0.0) * known.bounds.diagonal();
     let noise = vanished::rounding(tree, &known.bounds).max(written);
     vanished::remainder(&fine.measures.mass(&fine.brep), noise)
 }
 
-/// Evaluates in 237 bits: with the resolution, and if that contradicts itself, with the finest one,
-/// unless a resolution is requested.
-fn widely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
-    match (evaluated::<F237>(tree, options), options.resolution) {
+/// Evaluates with the resolution, and if that contradicts itself, with the finest one, unless a
+/// resolution is requested.
+fn widely<N: Float>(
+    tree: &Tree,
+    options: &EvaluationOptions,
+) -> Result<Evaluated<N>, EvaluationError> {
+    match (evaluated::<N>(tree, options), options.resolution) {
         (Err(error), None) => finely(tree, options).map_err(|_| error),
         (known, _) => known,
     }
 }
 
-/// The result of an evaluation in 237 bits. If f64 gives a boundary of the same kind, views can be
+/// The result of an evaluation in many bits. If f64 gives a boundary of the same kind, views can be
 /// computed in f64.
-fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Evaluation {
+fn seen(tree: &Tree, options: &EvaluationOptions, mut known: Evaluation) -> Evaluation {
     let by_resolution = EvaluationOptions {
         zeros: CoincidencePolicy::ByResolution,
         ..*options
@@ -312,21 +215,21 @@ fn seen(tree: &Tree, options: &EvaluationOptions, known: Evaluated<F237>) -> Eva
     let in_f64 = evaluated::<f64>(tree, &by_resolution).ok();
     let alike =
         in_f64.filter(|in_f64| in_f64.brep.topology.census() == known.brep.topology.census());
-    let resolution = alike.map(|in_f64| in_f64.resolution);
-    Evaluation {
-        view_resolution: resolution,
-        ..Evaluation::from(known)
-    }
+    known.view_resolution = alike.map(|in_f64| in_f64.resolution);
+    known
 }
 
-/// Evaluates in 237 bits with the finest resolution.
-fn finely(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluated<F237>, EvaluationError> {
-    let size = HalfSpaceModel::<F237>::new(tree).bounds.diagonal();
+/// Evaluates with the finest resolution.
+fn finely<N: Float>(
+    tree: &Tree,
+    options: &EvaluationOptions,
+) -> Result<Evaluated<N>, EvaluationError> {
+    let size = HalfSpaceModel::<N>::new(tree).bounds.diagonal();
     let finest = EvaluationOptions {
-        resolution: Some(FINEST_RESOLUTION * size),
+        resolution: Some(N::FINEST_RESOLUTION * size),
         ..*options
     };
-    evaluated::<F237>(tree, &finest)
+    evaluated::<N>(tree, &finest)
 }
 
 /// Evaluates in one precision, with the resolution that the options give.

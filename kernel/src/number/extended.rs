@@ -152,7 +152,7 @@ impl F237 {
     }
 
     /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d).
-    fn growth(self) -> Self {
+    pub(super) fn growth(self) -> Self {
         let x = Float::abs(self);
         if x > Self::from_f64(GREAT) || x.is_nan() {
             return Self(x.0.exp_m1());
@@ -187,6 +187,8 @@ impl Float for F237 {
     const NAN: Self = Self(f256::NAN);
     const SINC_TERMS: u32 = 26;
     const ROUNDING: Self = Self(power(-232));
+    const FINEST_RESOLUTION: f64 = super::predicates::FINEST_OF_237_BITS;
+    const TANGENCY: f64 = super::predicates::TANGENCY_OF_237_BITS;
     const IS_DOUBLE: bool = false;
 
     fn rules() -> &'static GaussRules<Self> {

@@ -33,6 +33,8 @@ impl Float for f64 {
     const NAN: Self = f64::NAN;
     const SINC_TERMS: u32 = 9;
     const ROUNDING: Self = 16.0 * f64::EPSILON;
+    const FINEST_RESOLUTION: f64 = super::predicates::ROUNDING;
+    const TANGENCY: f64 = super::predicates::TANGENCY;
     const IS_DOUBLE: bool = true;
 
     fn rules() -> &'static GaussRules<Self> {

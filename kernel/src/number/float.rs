@@ -47,6 +47,10 @@ pub trait Float:
     const SINC_TERMS: u32;
     /// The relative rounding error allowed to a short chain of operations.
     const ROUNDING: Self;
+    /// The finest resolution for which its rounding leaves room, relative to the part's size.
+    const FINEST_RESOLUTION: f64;
+    /// The precision of points of tangency, relative to the part's size, and of their angles.
+    const TANGENCY: f64;
     /// Whether it is an f64.
     const IS_DOUBLE: bool;
 

@@ -14,7 +14,7 @@ use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
 use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
-use crate::number::predicates::{Compare, FINEST_RESOLUTION};
+use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
@@ -264,8 +264,8 @@ fn opening_passes<N: Float>(
     let directed = coedges.iter().map(|&c| DirectedArc::new(brep, c));
     let arcs = Arcs::new(directed.collect(), N::ZERO);
     // The plane intersects the torus in a second parallel, too, on which most edges may lie. Such
-    // edges are distinguished from it to rounding, or to the finest resolution.
-    let resolution = N::ROUNDING.max(N::from_f64(FINEST_RESOLUTION)) * d.amid.size;
+    // edges are distinguished from it by the finest resolution.
+    let resolution = N::from_f64(N::FINEST_RESOLUTION) * d.amid.size;
     let mut passes: BTreeMap<CoedgeId, Vec<N>> = BTreeMap::new();
     let mut all_cross = true;
     for (i, &c) in coedges.iter().enumerate() {

@@ -28,9 +28,17 @@ pub(crate) const CLOSE: f64 = 100.0;
 /// The default resolution, relative to the part's size.
 pub const RELATIVE_RESOLUTION: f64 = 1e-11;
 
-/// The finest resolution of 237-bit numbers, relative to the part's size. Descriptions give numbers
-/// to a few dozen digits, so closer objects are one.
-pub const FINEST_RESOLUTION: f64 = 1e-45;
+/// The finest resolutions of numbers of 106 and of 237 bits, relative to the part's size. Points of
+/// surfaces that meet at very small angles are known to these. Descriptions give numbers to a few
+/// dozen digits, so closer objects are one.
+pub(super) const FINEST_OF_106_BITS: f64 = 1e-21;
+pub(super) const FINEST_OF_237_BITS: f64 = 1e-45;
+
+/// The precisions of points of tangency in f64 and in numbers of 106 and of 237 bits: square roots
+/// of their rounding, with a margin.
+pub(super) const TANGENCY: f64 = 1e-6;
+pub(super) const TANGENCY_OF_106_BITS: f64 = 1e-12;
+pub(super) const TANGENCY_OF_237_BITS: f64 = 3e-23;
 
 /// The relative rounding error allowed to a short chain of operations on f64 values.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;

@@ -1,0 +1,174 @@
+//! The result of an evaluation, and the numbers from which it was computed.
+
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::bounding_box::bounds;
+use premio_kernel::brep::check::{Violation, check};
+use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::number::double_double::F106;
+use premio_kernel::number::extended::F237;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, DecisionStats, Predicates, ROUNDING};
+use std::sync::OnceLock;
+
+/// The boundary of a tree, with the statistics of its decisions.
+#[derive(Debug)]
+pub struct Evaluation {
+    /// The boundary.
+    pub brep: Brep,
+    /// How the decisions were made.
+    pub decisions: DecisionStats,
+    /// The resolution used, in the part's unit.
+    pub resolution: f64,
+    /// A box that contains the part.
+    pub bounds: Aabb,
+    /// The integrals from which the mass properties are computed.
+    integrals: Integrals,
+    /// The resolution at which f64 gives the same boundary, if it does.
+    pub(super) view_resolution: Option<f64>,
+    /// Computed on the first request: in extended precision it takes longer than the boundary.
+    mass: OnceLock<Mass>,
+}
+
+/// The numbers from which a boundary was computed.
+#[derive(Debug)]
+enum Integrals {
+    /// f64 values.
+    Doubles(FaceIntegrals),
+    /// 106 bits: the boundary before it was rounded.
+    DoubleDoubles(Box<WideBoundary<F106>>),
+    /// 237 bits: the same.
+    Extended(Box<WideBoundary<F237>>),
+}
+
+/// A boundary in more bits than those of f64, and its integrals.
+#[derive(Debug)]
+struct WideBoundary<N: Float> {
+    brep: Brep<N>,
+    measures: FaceIntegrals<N>,
+}
+
+impl<N: Float> WideBoundary<N> {
+    fn violations(&self, resolution: f64) -> Vec<Violation> {
+        check(&self.brep, &self.measures, N::from_f64(resolution))
+    }
+}
+
+impl Evaluation {
+    /// The resolution for views of the boundary, which are computed in f64. `None` if f64 does not
+    /// give this boundary: surfaces rounded to f64 may coincide although the exact ones do not.
+    pub fn view_resolution(&self) -> Option<f64> {
+        self.view_resolution
+    }
+
+    /// The resolution that f64 supports for the boundary, however finely it was evaluated.
+    pub fn f64_resolution(&self) -> f64 {
+        let known = self.view_resolution.unwrap_or(self.resolution);
+        known.max(ROUNDING * self.bounds.diagonal())
+    }
+
+    /// The greatest distance between entities that coincide by the resolution; zero if none of them
+    /// was a close call.
+    pub fn greatest_coincidence(&self) -> f64 {
+        let distances = self.decisions.close_calls.iter().map(|c| c.distance.abs());
+        let coincident = distances.filter(|d| d.is_within(self.resolution));
+        coincident.fold(0.0, f64::max)
+    }
+
+    /// The volume, the area and the centroid.
+    pub fn mass(&self) -> Mass {
+        *self.mass.get_or_init(|| match &self.integrals {
+            Integrals::Doubles(measures) => measures.mass(&self.brep),
+            Integrals::DoubleDoubles(wide) => wide.measures.mass(&wide.brep),
+            Integrals::Extended(wide) => wide.measures.mass(&wide.brep),
+        })
+    }
+
+    /// The bounding box of the boundary, to rounding.
+    pub fn tight_bounds(&self) -> Aabb {
+        match &self.integrals {
+            Integrals::Doubles(_) => bounds(&self.brep),
+            Integrals::DoubleDoubles(wide) => bounds(&wide.brep),
+            Integrals::Extended(wide) => bounds(&wide.brep),
+        }
+    }
+
+    /// The rules that the boundary breaks.
+    pub fn violations(&self) -> Vec<Violation> {
+        match &self.integrals {
+            Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
+            Integrals::DoubleDoubles(wide) => wide.violations(self.resolution),
+            Integrals::Extended(wide) => wide.violations(self.resolution),
+        }
+    }
+}
+
+/// An evaluation in one precision.
+pub(super) struct Evaluated<N: Float> {
+    pub brep: Brep<N>,
+    pub measures: FaceIntegrals<N>,
+    pub decisions: DecisionStats,
+    pub resolution: f64,
+    pub bounds: Aabb,
+}
+
+impl<N: Float> Evaluated<N> {
+    /// The evaluation of the empty tree.
+    pub fn empty() -> Self {
+        let brep = Brep::default();
+        Self {
+            measures: FaceIntegrals::new(&brep),
+            brep,
+            decisions: Predicates::new(0.0).decisions(),
+            resolution: 0.0,
+            bounds: Aabb::EMPTY,
+        }
+    }
+}
+
+impl From<Evaluated<f64>> for Evaluation {
+    fn from(known: Evaluated<f64>) -> Self {
+        Self {
+            brep: known.brep,
+            decisions: known.decisions,
+            resolution: known.resolution,
+            bounds: known.bounds,
+            integrals: Integrals::Doubles(known.measures),
+            view_resolution: Some(known.resolution),
+            mass: OnceLock::new(),
+        }
+    }
+}
+
+impl From<Evaluated<F106>> for Evaluation {
+    fn from(known: Evaluated<F106>) -> Self {
+        known.widely(Integrals::DoubleDoubles)
+    }
+}
+
+impl From<Evaluated<F237>> for Evaluation {
+    fn from(known: Evaluated<F237>) -> Self {
+        known.widely(Integrals::Extended)
+    }
+}
+
+impl<N: Float> Evaluated<N> {
+    /// The evaluation in more bits than those of f64.
+    fn widely(self, keep: impl Fn(Box<WideBoundary<N>>) -> Integrals) -> Evaluation {
+        let mut decisions = self.decisions;
+        // All of them took more bits than f64 has.
+        decisions.refined += std::mem::take(&mut decisions.filtered);
+        Evaluation {
+            brep: self.brep.to_f64(),
+            decisions,
+            resolution: self.resolution,
+            bounds: self.bounds,
+            integrals: keep(Box::new(WideBoundary {
+                brep: self.brep,
+                measures: self.measures,
+            })),
+            view_resolution: None,
+            mass: OnceLock::new(),
+        }
+    }
+}

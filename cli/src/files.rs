@@ -101,7 +101,13 @@ impl Files {
             }
             Command::Match(options) => files.sought(&options.sought),
             Command::Track(options) => files.sought(&options.sought),
+            // The words of a program to start are no files.
+            Command::Fuzz(options) if options.launch.is_some() => {}
             Command::Fuzz(options) => {
+                for file in &options.files {
+                    files.reads("FILES", Some(file));
+                }
+                files.reads("--template", options.template.as_deref());
                 files.writes("--state", options.state.as_deref());
                 // A folder that does not exist yet contains no file that could be lost.
                 let folder = options.write.as_ref().filter(|folder| folder.is_dir());

@@ -13,6 +13,7 @@ use premio_kernel::brep::signature::Signature;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
 
 /// The views that are recounted: a perspective, a general orthographic one, and those along the
 /// axes, where limbs coincide with edges and with one another.
@@ -149,6 +150,9 @@ pub struct TrialOutcome {
     /// The undetermined checks.
     #[serde(default, rename = "untold")]
     pub undetermined: Vec<String>,
+    /// The duration of reading and evaluating the tree, without the checks, in seconds.
+    #[serde(default)]
+    pub seconds: f64,
 }
 
 impl TrialOutcome {
@@ -159,6 +163,7 @@ impl TrialOutcome {
             verdict: Verdict::Wrong(vec![Fault { kind, text }]),
             close_calls: 0,
             undetermined: Vec::new(),
+            seconds: 0.0,
         }
     }
 }
@@ -201,6 +206,7 @@ pub fn message(panic: &(dyn Any + Send)) -> &str {
 
 /// Runs the trial of a tree.
 pub(crate) fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
+    let started = Instant::now();
     let description = match read(&write(model, Format::Json), Format::Json) {
         Ok(description) => description,
         Err(error) if error.kind == ErrorKind::Limit => return refused(error.to_string(), 0),
@@ -215,6 +221,7 @@ pub(crate) fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         Ok(evaluation) => evaluation,
         Err(error) => return refused(error.to_string(), 0),
     };
+    let seconds = started.elapsed().as_secs_f64();
     let close_calls = evaluation.decisions.close_calls.len();
     if terms.strict && close_calls > 0 {
         let text = "decisions close to the resolution, under --strict";
@@ -256,6 +263,7 @@ pub(crate) fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
         verdict,
         close_calls,
         undetermined,
+        seconds,
     }
 }
 
@@ -264,6 +272,7 @@ fn refused(text: String, close_calls: usize) -> TrialOutcome {
         verdict: Verdict::Refused(text),
         close_calls,
         undetermined: Vec::new(),
+        seconds: 0.0,
     }
 }
 
@@ -357,7 +366,7 @@ fn sums(model: &PartModel, evaluation: &Evaluation, terms: &TrialConfig) -> Opti
     ];
     let [of_a, of_b] = [self::volume(&a, terms)?, self::volume(&b, terms)?];
     let off = [either + both - of_a - of_b, rest + both - of_a];
-    let size = size(&[&a, &b]).max(evaluation.bounds.diagonal());
+    let size = diagonal(&[&a, &b]).max(evaluation.bounds.diagonal());
     let allowed = size.powi(3) * OFF + 6.0 * size.powi(2) * evaluation.resolution;
     off.iter().any(|v| v.abs() > allowed).then(|| Fault {
         kind: FailureKind::Sums,
@@ -390,8 +399,8 @@ fn volume(model: &PartModel, terms: &TrialConfig) -> Option<f64> {
     Some(part.mass().volume)
 }
 
-/// The diagonal of a box that contains these models.
-fn size(models: &[&PartModel]) -> f64 {
+/// The diagonal of a box that contains the primitives of these models.
+pub(crate) fn diagonal(models: &[&PartModel]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
         let text = write(model, Format::Json);
         let tree = read(&text, Format::Json).ok()?.tree;

@@ -9,6 +9,9 @@ use std::path::PathBuf;
 /// Options of `fuzz`.
 #[derive(Debug, Args)]
 pub struct FuzzOptions {
+    /// Descriptions to compare the program of --against on, in place of random trees
+    #[arg(value_name = "FILES", conflicts_with_all = ["profile", "from", "count"])]
+    pub files: Vec<PathBuf>,
     /// The kinds of trees
     #[arg(
         long,
@@ -39,7 +42,30 @@ pub struct FuzzOptions {
     /// Write STEP files and meshes, read them back and compare them with the boundary
     #[arg(long)]
     pub step: bool,
-    /// The time limit of a tree, in seconds
+    /// Run a program on each model too, and compare its measures with ours: `{}` is the model's
+    /// file, `{out.stl}` (or off, obj) a mesh that it writes; without one it prints a line of JSON
+    /// with any of volume, area, bounds and solids, or error
+    #[arg(long, value_name = "COMMAND")]
+    pub against: Option<String>,
+    /// Write each model for the program as statements in place of the line of this file that has
+    /// `{{model}}`: a py or a cpp
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "against",
+        conflicts_with = "write_format"
+    )]
+    pub template: Option<PathBuf>,
+    /// The memory that the program may address, in MiB
+    #[arg(long, value_name = "MIB", default_value_t = 4096, requires = "against",
+          value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
+    pub memory: u64,
+    /// The relative tolerance of the program's volume and area; of its bounds relative to their
+    /// diagonal
+    #[arg(long, value_name = "REL", default_value = "1e-6", value_parser = positive,
+          requires = "against")]
+    pub tolerance: f64,
+    /// The time limit of a tree, in seconds, and of the program of --against
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "120")]
     pub limit: f64,
     /// The number of rays that measure each volume
@@ -51,14 +77,13 @@ pub struct FuzzOptions {
     /// Write the models to a folder, with a manifest of their true measures
     #[arg(long, value_name = "DIR")]
     pub write: Option<PathBuf>,
-    /// The formats of the models
+    /// The formats of the models of --write, or the format of those of --against
     #[arg(
         long,
         value_name = "F",
         value_enum,
         value_delimiter = ',',
-        default_value = "padl",
-        requires = "write"
+        default_value = "padl"
     )]
     pub write_format: Vec<ModelFormat>,
     /// Keep the state of the run in a file; with the same arguments it continues from there
@@ -76,6 +101,9 @@ pub struct FuzzOptions {
     /// Be a worker: run the trials of models from standard input, with this configuration
     #[arg(long, hide = true, value_name = "TERMS")]
     pub worker: Option<String>,
+    /// Start a program, the words after `--`, with this limit of memory in MiB
+    #[arg(long, hide = true, value_name = "MIB")]
+    pub launch: Option<u64>,
 }
 
 /// A profile, or all of them.

@@ -1,7 +1,8 @@
 //! The models written to a folder, with a manifest of their true measures.
 
 use super::FuzzError;
-use super::state::{Item, RunState};
+use super::item::Item;
+use super::state::RunState;
 use premio_verify::generator::model::PartModel;
 use premio_verify::generator::write::{Format, read, write};
 use premio_verify::trial::{TrialMeasures, TrialOutcome, Verdict};
@@ -58,7 +59,7 @@ impl Archive {
         let exact = tree(&write(model, Format::Json), Format::Json);
         let mut files = Vec::new();
         for &format in &self.formats {
-            let file = format!("{}-{}.{}", item.profile, item.seed, format.ending());
+            let file = format!("{}-{}.{}", item.source, item.seed, format.ending());
             let path = self.folder.join(&file);
             let text = write(model, format);
             premio::files::write_whole(&text, &path).map_err(|e| FuzzError::file(&path, e))?;
@@ -71,7 +72,7 @@ impl Archive {
             Verdict::Wrong(_) => ("wrong", None),
         };
         let line = Line {
-            profile: item.profile.name(),
+            profile: item.source.name(),
             seed: item.seed,
             verdict,
             measures,

@@ -1,10 +1,14 @@
 //! Fuzzing runs: many seeds distributed to worker processes, and their findings.
 //!
-//! [`worker`] runs [`premio_verify::trial`] on a part in a process that may hang or die; [`run`]
-//! distributes many parts to threads, [`state`] keeps the finished ones, [`summary`] reports them,
-//! and [`archive`] keeps the models.
+//! [`worker`] runs [`premio_verify::trial`] on a part in a process that may hang or die, and
+//! [`against`] another program on the same part; [`run`] distributes many parts to threads, [`state`]
+//! keeps the finished ones, [`summary`] reports them, and [`archive`] keeps the models. [`item`] has
+//! the parts, and [`finding`] what is found.
 
+pub mod against;
 pub mod archive;
+pub mod finding;
+pub mod item;
 pub mod run;
 pub mod state;
 pub mod summary;
@@ -35,6 +39,9 @@ pub enum FuzzError {
     /// A worker process cannot be started, or gives no valid answer.
     #[error("a worker process: {0}")]
     Worker(io::Error),
+    /// The program of `--against` cannot be started.
+    #[error("the program cannot be started: {0}")]
+    Program(io::Error),
 }
 
 impl FuzzError {

@@ -1,13 +1,16 @@
 //! Trials of many trees on many threads.
 
 use super::FuzzError;
+use super::against::verdict::AgainstFindingKind;
 use super::archive::Archive;
-use super::state::{Finds, Item, RunState};
-use super::worker::Examine;
+use super::finding::Finds;
+use super::item::{FileModel, Item};
+use super::state::RunState;
+use super::worker::{Examine, Examined, ModelOrigin};
 use premio_verify::generator::model::PartModel;
 use premio_verify::generator::shrink::shrink;
 use premio_verify::generator::write::{Format, write};
-use premio_verify::trial::{FailureKind, TrialOutcome, Verdict, reason};
+use premio_verify::trial::{FailureKind, Verdict, reason};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -24,6 +27,8 @@ pub struct RunConfig<'a> {
     pub state: Option<&'a Path>,
     /// The folder for models.
     pub archive: Option<&'a Archive>,
+    /// The models of files.
+    pub files: &'a [FileModel],
 }
 
 /// The interval between progress reports.
@@ -40,6 +45,11 @@ const SHRUNK: usize = 5;
 /// The most smaller trees that are tried for a finding; each that hangs takes the time limit.
 const TRIES: usize = 1000;
 const TRIES_IN_TIME: usize = 30;
+
+/// The number of findings of each kind and profile of another program that are shrunk, and the most
+/// smaller trees that are tried for each; a program has to start for every one of them.
+const SHRUNK_AGAINST: usize = 2;
+const TRIES_AGAINST: usize = 400;
 
 /// The data that all threads share.
 #[derive(Clone, Copy)]
@@ -91,17 +101,19 @@ fn try_all<E: Examine>(
         let Some(NumberedItem { number, item }) = take(shared, &next) else {
             return Ok(false);
         };
-        let model = item.profile.model(item.seed);
+        let model = item.model(shared.how.files);
         let started = Instant::now();
-        let Some(outcome) = examiner.examine(&model).map_err(FuzzError::Worker)? else {
+        let is_whole = true;
+        let examined = examiner.examine(&model, &ModelOrigin { item, is_whole });
+        let Some(examined) = examined.map_err(FuzzError::Worker)? else {
             return Ok(false);
         };
         let seconds = started.elapsed().as_secs_f64();
         let line = match shared.how.archive {
-            Some(archive) => Some(archive.put(item, &model, &outcome)?),
+            Some(archive) => Some(archive.put(item, &model, &examined.outcome)?),
             None => None,
         };
-        shared.state().record(number, outcome, seconds, line);
+        shared.state().record(number, examined, seconds, line);
         Ok(true)
     };
     // Few trees need only few processes.
@@ -139,7 +151,7 @@ fn shrink_all<E: Examine>(
         let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else {
             return Ok(false);
         };
-        let small = job.small(examiner)?;
+        let small = job.small(examiner, shared.how.files)?;
         // A finding whose shrinking was stopped is not minimal.
         if shared.is_stopped() {
             return Ok(false);
@@ -255,6 +267,9 @@ impl Saver {
 enum Way {
     Wrong(FailureKind),
     Refused(String),
+    /// By another program.
+    Against(AgainstFindingKind),
+    RefusedAgainst(String),
 }
 
 /// A finding to shrink.
@@ -267,11 +282,11 @@ struct Job {
 /// The first findings of each kind and profile that are not shrunk yet.
 fn jobs(state: &RunState) -> Vec<Job> {
     let mut jobs = Vec::new();
-    for (&profile, tally) in &state.tallies {
+    for (&source, tally) in &state.tallies {
         let mut add = |finds: &Finds, most: usize, way: Way| {
             let first = finds.iter().take(most);
             for (&seed, _) in first.filter(|(_, find)| find.shrunk.is_none()) {
-                let (item, way) = (Item { profile, seed }, way.clone());
+                let (item, way) = (Item { source, seed }, way.clone());
                 jobs.push(Job { item, way });
             }
         };
@@ -281,47 +296,79 @@ fn jobs(state: &RunState) -> Vec<Job> {
         for (reason, finds) in &tally.refusals {
             add(finds, 1, Way::Refused(reason.clone()));
         }
+        if let Some(against) = &tally.against {
+            for (&kind, finds) in &against.faults {
+                add(finds, SHRUNK_AGAINST, Way::Against(kind));
+            }
+            for (reason, finds) in &against.refusals {
+                add(finds, 1, Way::RefusedAgainst(reason.clone()));
+            }
+        }
     }
     jobs
 }
 
 impl Way {
-    fn is_that_of(&self, outcome: &TrialOutcome) -> bool {
-        match (self, &outcome.verdict) {
-            (Self::Wrong(kind), Verdict::Wrong(faults)) => faults.iter().any(|f| f.kind == *kind),
-            (Self::Refused(kind), Verdict::Refused(text)) => reason(text) == *kind,
+    fn is_that_of(&self, examined: &Examined) -> bool {
+        let against = examined.against.as_ref().map(|against| &against.verdict);
+        match (self, &examined.outcome.verdict, against) {
+            (Self::Wrong(kind), Verdict::Wrong(faults), _) => {
+                faults.iter().any(|f| f.kind == *kind)
+            }
+            (Self::Refused(kind), Verdict::Refused(text), _) => reason(text) == *kind,
+            (Self::Against(kind), _, Some(against)) => against.has(*kind),
+            (Self::RefusedAgainst(kind), _, Some(against)) => against.is_refusal(kind),
             _ => false,
+        }
+    }
+
+    /// The most smaller trees that are tried.
+    fn tries(&self) -> usize {
+        match self {
+            Self::Wrong(FailureKind::Time) | Self::Against(AgainstFindingKind::Slow) => {
+                TRIES_IN_TIME
+            }
+            Self::Wrong(_) | Self::Refused(_) => TRIES,
+            Self::Against(_) | Self::RefusedAgainst(_) => TRIES_AGAINST,
         }
     }
 }
 
 impl Job {
     /// The smallest tree that fails in the same way.
-    fn small(&self, examiner: &mut impl Examine) -> Result<PartModel, FuzzError> {
-        let tries = match self.way {
-            Way::Wrong(FailureKind::Time) => TRIES_IN_TIME,
-            _ => TRIES,
-        };
+    fn small(
+        &self,
+        examiner: &mut impl Examine,
+        files: &[FileModel],
+    ) -> Result<PartModel, FuzzError> {
         let mut error = None;
-        let model = self.item.profile.model(self.item.seed);
-        let small = shrink(&model, tries, |smaller| match examiner.examine(smaller) {
-            Ok(Some(outcome)) => self.way.is_that_of(&outcome),
+        let model = self.item.model(files);
+        let origin = ModelOrigin {
+            item: self.item,
+            is_whole: false,
+        };
+        let mut fails = |smaller: &PartModel| match examiner.examine(smaller, &origin) {
+            Ok(Some(examined)) => self.way.is_that_of(&examined),
             Ok(None) => false,
             Err(e) => {
                 error.get_or_insert(e);
                 false
             }
-        });
+        };
+        let small = shrink(&model, self.way.tries(), &mut fails);
         error.map_or(Ok(small), |e| Err(FuzzError::Worker(e)))
     }
 
     fn put(&self, state: &mut RunState, text: String) {
-        let Some(tally) = state.tallies.get_mut(&self.item.profile) else {
+        let Some(tally) = state.tallies.get_mut(&self.item.source) else {
             return;
         };
+        let against = tally.against.as_mut();
         let finds = match &self.way {
             Way::Wrong(kind) => tally.faults.get_mut(kind),
             Way::Refused(reason) => tally.refusals.get_mut(reason),
+            Way::Against(kind) => against.and_then(|a| a.faults.get_mut(kind)),
+            Way::RefusedAgainst(reason) => against.and_then(|a| a.refusals.get_mut(reason)),
         };
         if let Some(find) = finds.and_then(|finds| finds.get_mut(&self.item.seed)) {
             find.shrunk = Some(text);
@@ -336,7 +383,7 @@ mod tests {
     use crate::fuzz::summary::RunSummary;
     use premio_verify::generator::model::{ModelNodeKind, ModelPrimitive};
     use premio_verify::generator::profile::Profile;
-    use premio_verify::trial::{TrialConfig, TrialMeasures};
+    use premio_verify::trial::{TrialConfig, TrialMeasures, TrialOutcome};
     use std::io;
 
     /// An examiner by which tori are wrong and spheres refused; it stops after some trees.
@@ -346,7 +393,7 @@ mod tests {
     }
 
     impl Examine for Planted<'_> {
-        fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>> {
+        fn examine(&mut self, model: &PartModel, _: &ModelOrigin) -> io::Result<Option<Examined>> {
             let left = self.left.load(Ordering::Relaxed);
             self.left.store(left.saturating_sub(1), Ordering::Relaxed);
             if left == 0 {
@@ -358,7 +405,8 @@ mod tests {
                 model.nodes().iter().any(|node| leaf(&node.kind))
             };
             if has(|p| matches!(p, ModelPrimitive::Torus { .. })) {
-                return Ok(Some(TrialOutcome::wrong(FailureKind::Volume, "a torus")));
+                let wrong = TrialOutcome::wrong(FailureKind::Volume, "a torus");
+                return Ok(Some(wrong.into()));
             }
             let measures = TrialMeasures {
                 volume: 1.0,
@@ -370,11 +418,13 @@ mod tests {
                 true => Verdict::Refused(format!("{} nodes", model.nodes().len())),
                 false => Verdict::Right(measures),
             };
-            Ok(Some(TrialOutcome {
+            let outcome = TrialOutcome {
                 verdict,
                 close_calls: 1,
                 undetermined: Vec::new(),
-            }))
+                seconds: 0.0,
+            };
+            Ok(Some(outcome.into()))
         }
     }
 
@@ -387,6 +437,8 @@ mod tests {
             limit: 1.0,
             shrink: true,
             write: None,
+            files: Vec::new(),
+            against: None,
         }
     }
 
@@ -398,6 +450,7 @@ mod tests {
             stop: &stop,
             state: path,
             archive: None,
+            files: &[],
         };
         let make = || Planted {
             left: &left,

@@ -1,6 +1,10 @@
 //! The plan and the state of a run, kept in a file, so that it continues where it ended.
 
 use super::FuzzError;
+use super::against::tally::AgainstTally;
+use super::finding::{Find, Finds};
+use super::item::{Item, TreeSource};
+use super::worker::Examined;
 use crate::diagnostics::CliError;
 use crate::session::InputLimits;
 use premio_text::Document;
@@ -31,6 +35,28 @@ pub struct Plan {
     pub shrink: bool,
     /// The folder and the formats of models.
     pub write: Option<Writing>,
+    /// The files, in place of profiles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<PathBuf>,
+    /// The other program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<AgainstPlan>,
+}
+
+/// What determines the results of another program.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct AgainstPlan {
+    /// The command.
+    pub command: String,
+    /// The ending of the models' files.
+    pub form: String,
+    /// The template of the models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub template: Option<PathBuf>,
+    /// The limit of memory, in MiB.
+    pub memory: u64,
+    /// The relative tolerance.
+    pub tolerance: f64,
 }
 
 /// The folder and the formats of models.
@@ -41,28 +67,6 @@ pub struct Writing {
     /// The endings of the files.
     pub formats: Vec<String>,
 }
-
-/// A tree of a plan.
-#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
-pub struct Item {
-    /// Its profile.
-    pub profile: Profile,
-    /// Its seed.
-    pub seed: u64,
-}
-
-/// A finding: a wrong or a refused tree.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Find {
-    /// The message.
-    pub text: String,
-    /// The smallest tree found that fails in the same way, in padl.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shrunk: Option<String>,
-}
-
-/// Findings by seed.
-pub type Finds = BTreeMap<u64, Find>;
 
 /// The results of the trees of a profile.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
@@ -92,6 +96,9 @@ pub struct Tally {
     pub longest: Option<(u64, f64)>,
     /// Those that took longer than [`SLOW`], by seed, in seconds.
     pub slow: BTreeMap<u64, f64>,
+    /// The results of the other program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<AgainstTally>,
 }
 
 /// The duration, in seconds, above which a trial is listed.
@@ -108,8 +115,8 @@ pub struct RunState {
     pub plan: Plan,
     /// The finished items, as half-open ranges.
     done: BTreeMap<u64, u64>,
-    /// The results by profile.
-    pub tallies: BTreeMap<Profile, Tally>,
+    /// The results by profile, or those of the files.
+    pub tallies: BTreeMap<TreeSource, Tally>,
     /// The duration so far, in seconds.
     pub seconds: f64,
 }
@@ -117,15 +124,38 @@ pub struct RunState {
 impl Plan {
     /// The number of trees.
     pub fn trees(&self) -> u64 {
-        self.count.saturating_mul(self.profiles.len() as u64)
+        match self.files.is_empty() {
+            true => self.count.saturating_mul(self.profiles.len() as u64),
+            false => self.files.len() as u64,
+        }
     }
 
-    /// The tree of an index from 0: seed by seed, every profile of each.
+    /// The sources of its trees.
+    pub fn sources(&self) -> Vec<TreeSource> {
+        match self.files.is_empty() {
+            true => self
+                .profiles
+                .iter()
+                .map(|p| TreeSource::Profile(*p))
+                .collect(),
+            false => vec![TreeSource::Files],
+        }
+    }
+
+    /// The tree of an index from 0: seed by seed, every profile of each; or file by file.
     pub fn item(&self, number: u64) -> Option<Item> {
+        if number < self.files.len() as u64 {
+            let source = TreeSource::Files;
+            return Some(Item {
+                source,
+                seed: number,
+            });
+        }
         let profiles = self.profiles.len() as u64;
         let profile = *self.profiles.get(number.checked_rem(profiles)? as usize)?;
         let seed = self.from.wrapping_add(number / profiles);
-        (number < self.trees()).then_some(Item { profile, seed })
+        let source = TreeSource::Profile(profile);
+        (number < self.trees()).then_some(Item { source, seed })
     }
 }
 
@@ -135,8 +165,8 @@ impl Tally {
         self.right + self.refused + self.wrong
     }
 
-    fn record(&mut self, seed: u64, outcome: TrialOutcome, seconds: f64) {
-        let find = |text| Find { text, shrunk: None };
+    fn record(&mut self, seed: u64, outcome: TrialOutcome, seconds: f64, file: Option<&str>) {
+        let find = |text| Find::new(text, file);
         match outcome.verdict {
             Verdict::Right(_) => self.right += 1,
             Verdict::Refused(text) => {
@@ -171,7 +201,8 @@ impl Tally {
 impl RunState {
     /// A run that has not begun.
     pub fn new(plan: Plan) -> Self {
-        let tallies = plan.profiles.iter().map(|&p| (p, Tally::default()));
+        let tallies = plan.sources();
+        let tallies = tallies.into_iter().map(|s| (s, Tally::default()));
         Self {
             schema: SCHEMA.to_owned(),
             tallies: tallies.collect(),
@@ -252,22 +283,26 @@ impl RunState {
         before.is_some_and(|(_, &to)| number < to)
     }
 
-    /// Records the outcome of a tree, its duration, and its line of the manifest.
-    pub fn record(
-        &mut self,
-        number: u64,
-        outcome: TrialOutcome,
-        seconds: f64,
-        line: Option<String>,
-    ) {
-        let Some(Item { profile, seed }) = self.plan.item(number) else {
+    /// Records the outcomes of a tree, their duration, and its line of the manifest.
+    pub fn record(&mut self, number: u64, examined: Examined, seconds: f64, line: Option<String>) {
+        let Some(Item { source, seed }) = self.plan.item(number) else {
             return;
         };
         if self.is_done(number) {
             return;
         }
-        let tally = self.tallies.entry(profile).or_default();
-        tally.record(seed, outcome, seconds);
+        let files = &self.plan.files;
+        let file = match source {
+            TreeSource::Profile(_) => None,
+            TreeSource::Files => usize::try_from(seed).ok().and_then(|k| files.get(k)),
+        };
+        let file = file.map(|path| path.display().to_string());
+        let tally = self.tallies.entry(source).or_default();
+        tally.record(seed, examined.outcome, seconds, file.as_deref());
+        if let Some(outcome) = examined.against {
+            let against = tally.against.get_or_insert_default();
+            against.record(seed, outcome, file.as_deref());
+        }
         tally.lines.extend(line.map(|line| (seed, line)));
         self.mark(number);
     }
@@ -310,6 +345,8 @@ mod tests {
             limit: 20.0,
             shrink: false,
             write: None,
+            files: Vec::new(),
+            against: None,
         }
     }
 
@@ -320,6 +357,7 @@ mod tests {
                 verdict: Verdict::Refused(format!("near ({number}, 1, 2)")),
                 close_calls: 2,
                 undetermined: Vec::new(),
+                seconds: 0.0,
             },
             _ => TrialOutcome::wrong(FailureKind::Time, "none"),
         }
@@ -327,10 +365,10 @@ mod tests {
 
     #[test]
     fn items_are_all_profiles_of_each_seed() {
-        let item = |n| plan().item(n).map(|i| (i.profile, i.seed));
-        assert_eq!(item(0), Some((Profile::Near, 5)));
-        assert_eq!(item(1), Some((Profile::Grid, 5)));
-        assert_eq!(item(19), Some((Profile::Grid, 14)));
+        let item = |n| plan().item(n).map(|i| (i.source, i.seed));
+        assert_eq!(item(0), Some((TreeSource::Profile(Profile::Near), 5)));
+        assert_eq!(item(1), Some((TreeSource::Profile(Profile::Grid), 5)));
+        assert_eq!(item(19), Some((TreeSource::Profile(Profile::Grid), 14)));
         assert_eq!(item(20), None);
     }
 
@@ -338,12 +376,17 @@ mod tests {
     fn any_order_is_the_same_state() {
         let (mut a, mut b) = (RunState::new(plan()), RunState::new(plan()));
         for n in 0..20 {
-            a.record(n, outcome(n), 1.0, None);
-            b.record((n * 7 + 3) % 20, outcome((n * 7 + 3) % 20), 1.0, None);
+            a.record(n, outcome(n).into(), 1.0, None);
+            b.record(
+                (n * 7 + 3) % 20,
+                outcome((n * 7 + 3) % 20).into(),
+                1.0,
+                None,
+            );
             assert_eq!((a.done(), b.done()), (n + 1, n + 1));
         }
         // A second record is not another tree.
-        b.record(3, outcome(3), 1.0, None);
+        b.record(3, outcome(3).into(), 1.0, None);
         for state in [&mut a, &mut b] {
             assert_eq!(state.done, BTreeMap::from([(0, 20)]));
             for tally in state.tallies.values_mut() {
@@ -361,7 +404,7 @@ mod tests {
         let mut state = RunState::load(&path, plan(), &InputLimits::default()).unwrap();
         assert_eq!(state, RunState::new(plan()));
         for n in [4, 9, 5, 12] {
-            state.record(n, outcome(n), 0.1 + n as f64, Some("{}".to_owned()));
+            state.record(n, outcome(n).into(), 0.1 + n as f64, Some("{}".to_owned()));
         }
         state.save(&path).unwrap();
         assert_eq!(

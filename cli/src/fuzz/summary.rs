@@ -3,8 +3,11 @@
 //! Everything except the times is the same for any number of threads: findings are in the order of
 //! profiles, kinds and seeds, and the times are separate, at the end.
 
-use super::state::{Find, Finds, Plan, RunState, Tally};
-use premio_verify::generator::profile::Profile;
+use super::against::tally::{AgainstCounts, AgainstTally, AgainstTimes};
+use super::finding::{Find, Finds};
+use super::item::TreeSource;
+use super::state::{Plan, RunState, Tally};
+use premio_text::escape::terminal;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,7 +25,10 @@ pub struct RunSummary {
     refused: u64,
     /// The number of wrong ones.
     pub wrong: u64,
-    profiles: BTreeMap<Profile, Part>,
+    /// The numbers of trees by the verdict on the other program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against: Option<AgainstCounts>,
+    profiles: BTreeMap<TreeSource, Part>,
     seconds: Seconds,
 }
 
@@ -39,6 +45,17 @@ struct Part {
     #[serde(rename = "untold")]
     undetermined: Vec<Kind>,
     close_calls: CloseCalls,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<AgainstPart>,
+}
+
+/// The results of another program on a profile.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct AgainstPart {
+    #[serde(flatten)]
+    counts: AgainstCounts,
+    refusals: Vec<Kind>,
+    faults: Vec<Kind>,
 }
 
 /// The findings of one kind.
@@ -66,7 +83,7 @@ struct CloseCalls {
 struct Seconds {
     /// From the beginning to the end.
     total: f64,
-    profiles: BTreeMap<Profile, Times>,
+    profiles: BTreeMap<TreeSource, Times>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,6 +92,9 @@ struct Times {
     trials: f64,
     longest: Option<Timed>,
     slow: Vec<Timed>,
+    /// Of the other program and of ours, on the compared trees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<AgainstTimes>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,6 +108,8 @@ impl RunSummary {
     pub fn new(state: &RunState) -> Self {
         let sum = |of: fn(&Tally) -> u64| state.tallies.values().map(of).sum();
         let tallies = || state.tallies.iter();
+        let against = tallies().filter_map(|(_, t)| t.against.as_ref());
+        let against = against.map(|a| a.counts).reduce(AgainstCounts::plus);
         Self {
             schema: "premio.fuzz/1",
             plan: state.plan.clone(),
@@ -96,6 +118,7 @@ impl RunSummary {
             right: sum(|t| t.right),
             refused: sum(|t| t.refused),
             wrong: sum(|t| t.wrong),
+            against,
             profiles: tallies().map(|(p, t)| (*p, Part::new(t))).collect(),
             seconds: Seconds {
                 total: state.seconds,
@@ -125,6 +148,19 @@ impl Part {
                 trees: tally.close_trees,
                 decisions: tally.close_calls,
             },
+            against: tally.against.as_ref().map(AgainstPart::new),
+        }
+    }
+}
+
+impl AgainstPart {
+    fn new(tally: &AgainstTally) -> Self {
+        let refusals = tally.refusals.iter().map(|(k, f)| Kind::new(k, f));
+        let faults = tally.faults.iter().map(|(k, f)| Kind::new(k.name(), f));
+        Self {
+            counts: tally.counts,
+            refusals: refusals.collect(),
+            faults: faults.collect(),
         }
     }
 }
@@ -150,6 +186,7 @@ impl Times {
             trials: tally.seconds,
             longest: tally.longest.map(timed),
             slow: tally.slow.iter().map(|(&s, &t)| timed((s, t))).collect(),
+            against: tally.against.as_ref().map(|against| against.times),
         }
     }
 }
@@ -177,10 +214,15 @@ impl fmt::Display for RunSummary {
                 self.seconds.profiles.get(profile).map_or(0.0, |t| t.trials),
             )?;
         }
+        self.write_against(f)?;
         for (profile, part) in &self.profiles {
             list(f, *profile, "wrong", &part.faults)?;
             list(f, *profile, "refused", &part.refusals)?;
             list(f, *profile, "untold", &part.undetermined)?;
+            if let Some(against) = &part.against {
+                list(f, *profile, "the program", &against.faults)?;
+                list(f, *profile, "refused by the program", &against.refusals)?;
+            }
         }
         for (profile, times) in &self.seconds.profiles {
             for Timed { seed, seconds } in times.slow.iter().take(LISTED) {
@@ -201,15 +243,86 @@ impl fmt::Display for RunSummary {
         writeln!(
             f,
             "{trees} trees in {total:.1} s: {wrong} wrong, {refused} refused{left}"
-        )
+        )?;
+        match self.against {
+            Some(AgainstCounts {
+                right,
+                wrong,
+                refused,
+                crashed,
+                slow,
+                memory,
+                unread,
+                unknown,
+            }) => writeln!(
+                f,
+                "the program: {right} right, {wrong} wrong, {refused} refused, {crashed} crashed, \
+                 {slow} slow, {memory} without memory, {unread} unread, {unknown} unknown"
+            ),
+            None => Ok(()),
+        }
     }
 }
 
-fn list(f: &mut fmt::Formatter<'_>, profile: Profile, what: &str, kinds: &[Kind]) -> fmt::Result {
+impl RunSummary {
+    /// The table of the other program.
+    fn write_against(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.profiles.iter();
+        let rows = rows.filter_map(|(source, part)| Some((source, part.against.as_ref()?)));
+        for (k, (source, part)) in rows.enumerate() {
+            if k == 0 {
+                writeln!(
+                    f,
+                    "\n{:<8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9}",
+                    "program",
+                    "right",
+                    "wrong",
+                    "refused",
+                    "crashed",
+                    "slow",
+                    "memory",
+                    "unread",
+                    "unknown",
+                    "seconds",
+                    "ours"
+                )?;
+            }
+            let counts = &part.counts;
+            let times = self.seconds.profiles.get(source);
+            let times = times.and_then(|times| times.against).unwrap_or_default();
+            writeln!(
+                f,
+                "{:<8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9.1} {:>9.1}",
+                source.name(),
+                counts.right,
+                counts.wrong,
+                counts.refused,
+                counts.crashed,
+                counts.slow,
+                counts.memory,
+                counts.unread,
+                counts.unknown,
+                times.stated,
+                times.ours,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn list(
+    f: &mut fmt::Formatter<'_>,
+    profile: TreeSource,
+    what: &str,
+    kinds: &[Kind],
+) -> fmt::Result {
     for Kind { kind, count, finds } in kinds {
-        writeln!(f, "\n{profile}, {what}: {kind}: {count}")?;
+        writeln!(f, "\n{profile}, {what}: {}: {count}", terminal(kind))?;
         for Seed { seed, find } in finds.iter().take(LISTED) {
-            writeln!(f, "  {profile} {seed}: {}", find.text)?;
+            match &find.file {
+                Some(file) => writeln!(f, "  {}: {}", terminal(file), terminal(&find.text))?,
+                None => writeln!(f, "  {profile} {seed}: {}", terminal(&find.text))?,
+            }
             for line in find.shrunk.iter().flat_map(|text| text.lines()) {
                 writeln!(f, "    {line}")?;
             }

@@ -4,6 +4,8 @@
 //! until it dies or takes too long; then it is ended. The tree is tried once more in a new process,
 //! which alone counts, so that a failure is caused by the tree and not by earlier ones.
 
+use super::against::tally::AgainstOutcome;
+use super::item::Item;
 use premio_verify::generator::model::PartModel;
 use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, guarded};
 use std::fs::File;
@@ -14,10 +16,37 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
+/// The tree of a run that a model is, or that it was shrunk from.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct ModelOrigin {
+    /// The tree of the run.
+    pub item: Item,
+    /// Whether the model is the whole tree.
+    pub is_whole: bool,
+}
+
+/// The outcomes of a tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Examined {
+    /// Of our own trial.
+    pub outcome: TrialOutcome,
+    /// Of another program.
+    pub against: Option<AgainstOutcome>,
+}
+
+impl From<TrialOutcome> for Examined {
+    fn from(outcome: TrialOutcome) -> Self {
+        Self {
+            outcome,
+            against: None,
+        }
+    }
+}
+
 /// An examiner of trees.
 pub trait Examine {
-    /// The outcome of a tree; none where the run shall stop.
-    fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>>;
+    /// The outcomes of a tree; none where the run shall stop.
+    fn examine(&mut self, model: &PartModel, origin: &ModelOrigin) -> io::Result<Option<Examined>>;
 }
 
 /// A process that examines trees, started on demand.
@@ -81,14 +110,14 @@ impl<'a> Worker<'a> {
 }
 
 impl Examine for Worker<'_> {
-    fn examine(&mut self, model: &PartModel) -> io::Result<Option<TrialOutcome>> {
+    fn examine(&mut self, model: &PartModel, _: &ModelOrigin) -> io::Result<Option<Examined>> {
         let text = serde_json::to_string(model)?;
         let fresh = self.process.as_ref().is_none_or(|p| p.served == 0);
         let mut attempt = self.attempt(&text)?;
         if !fresh && matches!(attempt, Attempt::TooLong | Attempt::Died(_)) {
             attempt = self.attempt(&text)?;
         }
-        Ok(match attempt {
+        let outcome = match attempt {
             Attempt::Answered(outcome) => Some(outcome),
             Attempt::Stopped => None,
             Attempt::TooLong => {
@@ -96,7 +125,8 @@ impl Examine for Worker<'_> {
                 Some(TrialOutcome::wrong(FailureKind::Time, text))
             }
             Attempt::Died(text) => Some(TrialOutcome::wrong(FailureKind::Crash, text)),
-        })
+        };
+        Ok(outcome.map(Examined::from))
     }
 }
 

@@ -77,14 +77,8 @@ pub struct FuzzOptions {
     /// Write the models to a folder, with a manifest of their true measures
     #[arg(long, value_name = "DIR")]
     pub write: Option<PathBuf>,
-    /// The formats of the models of --write, or the format of those of --against
-    #[arg(
-        long,
-        value_name = "F",
-        value_enum,
-        value_delimiter = ',',
-        default_value = "padl"
-    )]
+    /// The formats of the models of --write, or the format of those of --against [default: padl]
+    #[arg(long, value_name = "F", value_enum, value_delimiter = ',')]
     pub write_format: Vec<ModelFormat>,
     /// Keep the state of the run in a file; with the same arguments it continues from there
     #[arg(long, value_name = "FILE")]

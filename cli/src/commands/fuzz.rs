@@ -110,7 +110,7 @@ fn run_shown<E: Examine>(
 
 /// Checks the options that depend on each other.
 fn check_use(options: &FuzzOptions) -> Result<(), CliError> {
-    let has_formats = options.write_format != [ModelFormat::Padl];
+    let has_formats = !options.write_format.is_empty();
     let text = match (&options.against, &options.write) {
         (None, _) if !options.files.is_empty() => "FILES: expected `--against` with them",
         (None, None) if has_formats => "--write-format: expected `--write` or `--against` with it",
@@ -254,6 +254,9 @@ fn ending(path: &Path) -> String {
 
 fn formats(options: &FuzzOptions) -> Vec<Format> {
     let mut wanted = options.write_format.clone();
+    if wanted.is_empty() {
+        wanted.push(ModelFormat::Padl);
+    }
     wanted.sort();
     wanted.dedup();
     let format = |format: &ModelFormat| match format {

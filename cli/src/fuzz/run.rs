@@ -108,7 +108,9 @@ fn try_all<E: Examine>(
         let Some(examined) = examined.map_err(FuzzError::Worker)? else {
             return Ok(false);
         };
-        let seconds = started.elapsed().as_secs_f64();
+        // The times of another program are counted apart.
+        let program = examined.against.as_ref().map(|a| a.times.program);
+        let seconds = started.elapsed().as_secs_f64() - program.unwrap_or(0.0);
         let line = match shared.how.archive {
             Some(archive) => Some(archive.put(item, &model, &examined.outcome)?),
             None => None,

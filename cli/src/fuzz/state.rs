@@ -260,10 +260,17 @@ impl RunState {
             }
             end = to;
         }
+        let is_counted = |tally: &Tally| match &tally.against {
+            Some(against) => against.counts.trees() == Some(tally.trees()),
+            None => self.plan.against.is_none() || tally.trees() == 0,
+        };
         let counts = self.tallies.values();
         let mut counts = counts.flat_map(|tally| [tally.right, tally.refused, tally.wrong]);
         let counted = counts.try_fold(0u64, u64::checked_add);
-        end <= self.plan.trees() && counted == Some(self.done())
+        // The first comparison excludes an overflow in the last one.
+        end <= self.plan.trees()
+            && counted == Some(self.done())
+            && self.tallies.values().all(is_counted)
     }
 
     /// Saves the run: the whole file or none.

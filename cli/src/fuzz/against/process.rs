@@ -93,10 +93,18 @@ fn tail(mut file: File, most: u64) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// The statuses by which a shell reports a signal; the first one stands for none.
+#[cfg(unix)]
+const SIGNALS_OF_SHELL: std::ops::RangeInclusive<i32> = 128..=159;
+
 #[cfg(unix)]
 fn end(status: ExitStatus) -> ProgramEnd {
     use std::os::unix::process::ExitStatusExt;
     match (status.code(), status.signal()) {
+        // A shell ends so where a signal ended its program.
+        (Some(code), _) if SIGNALS_OF_SHELL.contains(&code) => {
+            ProgramEnd::Signalled(code - SIGNALS_OF_SHELL.start())
+        }
         (Some(code), _) => ProgramEnd::Exited(code),
         (None, signal) => ProgramEnd::Signalled(signal.unwrap_or_default()),
     }

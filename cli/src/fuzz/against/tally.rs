@@ -42,6 +42,20 @@ impl AgainstCounts {
         }
     }
 
+    /// The number of trees; none if it is beyond 64 bits.
+    pub fn trees(&self) -> Option<u64> {
+        let failed = [
+            self.wrong,
+            self.crashed,
+            self.slow,
+            self.memory,
+            self.unread,
+        ];
+        let others = [self.right, self.refused, self.unknown];
+        let mut all = failed.into_iter().chain(others);
+        all.try_fold(0u64, u64::checked_add)
+    }
+
     /// The number of trees on which the program failed; a refusal is no failure.
     pub fn failures(&self) -> u64 {
         self.wrong + self.crashed + self.slow + self.memory + self.unread

@@ -51,6 +51,10 @@ fn a_right_program_is_right() {
         assert!(output.status.success() && output.stderr.is_empty());
     }
     fs::write(folder.path().join("part.padl"), PART).unwrap();
+    let step = format!("'{PREMIO}' export {{}} -o {{out.step}} --format step");
+    let words = "--profile parts --count 4 --rays 100 --json";
+    let found = summary(&against(folder.path(), &step, words));
+    assert_eq!(found["against"]["right"], 4, "{found:#}");
     let output = against(folder.path(), &program, "part.padl --json");
     let found = summary(&output);
     assert_eq!(

@@ -43,7 +43,7 @@ pub struct FuzzOptions {
     #[arg(long)]
     pub step: bool,
     /// Run a program on each model too, and compare its measures with ours: `{}` is the model's
-    /// file, `{out.stl}` (or off, obj) a mesh that it writes; without one it prints a line of JSON
+    /// file, `{out.stl}` (off, obj, step) a file that it writes; without one it prints a line of JSON
     /// with any of volume, area, bounds and solids, or error
     #[arg(long, value_name = "COMMAND")]
     pub against: Option<String>,

@@ -216,7 +216,6 @@ mod tests {
     fn a_written_model_is_read_as_it_was() {
         for profile in [
             Profile::Grid,
-            Profile::Near,
             Profile::Tangent,
             Profile::Wide,
             Profile::Parts,

@@ -54,6 +54,12 @@ pub enum MeshReadError {
         /// The triangle, from 1.
         number: usize,
     },
+    /// There are too many triangles.
+    #[error("found {count} triangles, expected at most {MAX_TRIANGLES}")]
+    TooMany {
+        /// Their number.
+        count: usize,
+    },
     /// A side has not as many triangles in one sense as in the other.
     #[error("the mesh is not closed, or not oriented, at ({:.6}, {:.6}, {:.6})", .place[0], .place[1], .place[2])]
     Open {
@@ -61,6 +67,9 @@ pub enum MeshReadError {
         place: [f64; 3],
     },
 }
+
+/// The largest number of triangles: their sides have to fit into memory.
+const MAX_TRIANGLES: usize = 1 << 23;
 
 /// The triangles of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -97,6 +106,10 @@ struct SideUse {
 
 impl ReadMesh {
     fn measures(&self) -> Result<StatedMeasures, MeshReadError> {
+        let count = self.triangles.len();
+        if count > MAX_TRIANGLES {
+            return Err(MeshReadError::TooMany { count });
+        }
         // Relative to the first corner, so that the part's position costs no digits.
         let first = self.triangles.first().map(|corners| corners[0]);
         let Some(origin) = first.map(|corner| Point3::from(self.points[corner])) else {

@@ -9,7 +9,7 @@ mod outlines;
 mod recount;
 mod shadow;
 mod sheets;
-mod step;
+pub(crate) mod step;
 mod strokes;
 pub mod views;
 mod window;

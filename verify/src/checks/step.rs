@@ -4,16 +4,18 @@
 //! with opposite senses. The volume by the file's own curves and surfaces is the boundary's.
 
 mod curve;
+pub(crate) mod foreign;
 mod part21;
 mod rules;
 mod shape;
 mod surface;
+mod walk;
 
 use super::{Check, CheckSubject, Checker, Finding};
 use premio_exchange::step::{self, Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use rules::{Known, Measured};
-use shape::StepShape;
+use shape::{StepOrigin, StepShape};
 
 /// The number of broken rules that are reported.
 const REPORTED: usize = 3;
@@ -42,7 +44,8 @@ impl Checker<'_> {
             Ok(text) => text,
             Err(error) => return check(Finding::Passes, format!("refused: {error}")),
         };
-        let shape = part21::read(&text).and_then(|instances| StepShape::new(&instances));
+        let shape =
+            part21::read(&text).and_then(|instances| StepShape::new(&instances, StepOrigin::Ours));
         let shape = match shape {
             Ok(shape) => shape,
             Err(error) => return check(Finding::Fails, error.to_string()),
@@ -143,7 +146,7 @@ mod tests {
     }
 
     fn measured(text: &str, known: &Known) -> Measured {
-        let shape = StepShape::new(&part21::read(text).unwrap()).unwrap();
+        let shape = StepShape::new(&part21::read(text).unwrap(), StepOrigin::Ours).unwrap();
         rules::measure(&shape, known)
     }
 

@@ -1,6 +1,6 @@
 //! The words of the other program, with the places for its files.
 
-use premio_verify::against::mesh::MeshFormat;
+use premio_verify::against::result_file::ResultFormat;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ const END: char = '}';
 pub struct AgainstCommand {
     words: Vec<String>,
     /// The format of the file that it writes.
-    pub output: Option<MeshFormat>,
+    pub output: Option<ResultFormat>,
 }
 
 /// Why a text is no command.
@@ -29,7 +29,9 @@ pub enum CommandError {
     #[error("expected `{{}}` where the model's file shall be")]
     NoModel,
     /// An output has an unknown ending, or there are several.
-    #[error("found `{found}`, expected one of `{{out.stl}}`, `{{out.off}}`, `{{out.obj}}`, once")]
+    #[error(
+        "found `{found}`, expected one of `{{out.stl}}`, `{{out.off}}`, `{{out.obj}}`, `{{out.step}}`"
+    )]
     Output {
         /// What was found.
         found: String,
@@ -56,8 +58,8 @@ impl AgainstCommand {
                 let found = &word[at..];
                 let end = found.find(END).map_or(found.len(), |end| end + 1);
                 let found = &found[..end];
-                let is_of = |format: &MeshFormat| found == placeholder(*format);
-                let format = MeshFormat::ALL.into_iter().find(is_of);
+                let is_of = |format: &ResultFormat| found == placeholder(*format);
+                let format = ResultFormat::ALL.into_iter().find(is_of);
                 if format.is_none() || output.is_some_and(|known| Some(known) != format) {
                     let found = found.to_owned();
                     return Err(CommandError::Output { found });
@@ -100,7 +102,7 @@ impl AgainstCommand {
     }
 }
 
-fn placeholder(format: MeshFormat) -> String {
+fn placeholder(format: ResultFormat) -> String {
     format!("{OUTPUT}{format}{END}")
 }
 
@@ -111,7 +113,7 @@ mod tests {
     #[test]
     fn words_are_split_and_filled() {
         let command = AgainstCommand::new("run --in={} 'a b' -o {out.stl}").unwrap();
-        assert_eq!(command.output, Some(MeshFormat::Stl));
+        assert_eq!(command.output, Some(ResultFormat::ALL[0]));
         let words = command.words(Path::new("/t/m.csg"), Path::new("/t/o.stl"));
         assert_eq!(words, ["run", "--in=/t/m.csg", "a b", "-o", "/t/o.stl"]);
         // Other braces are the program's own.
@@ -126,7 +128,7 @@ mod tests {
         assert_eq!(error(""), CommandError::Words);
         assert_eq!(error("run '{}"), CommandError::Words);
         assert_eq!(error("run"), CommandError::NoModel);
-        for found in ["{out.step}", "{out.}", "{out.stl"] {
+        for found in ["{out.dwg}", "{out.}", "{out.stl"] {
             let output = CommandError::Output {
                 found: found.to_owned(),
             };

@@ -6,7 +6,7 @@ use premio_verify::against::answer::{
     AnswerError, StatedAnswer, StatedMeasures, last_answer, one_line,
 };
 use premio_verify::against::comparison::{ComparedMeasure, MeasureDifference};
-use premio_verify::against::mesh::{MeshFormat, measures};
+use premio_verify::against::result_file::{ResultFormat, measures};
 use premio_verify::trial::reason;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -145,7 +145,7 @@ const NO_MEMORY: [&str; 7] = [
 ];
 
 /// The result in a program's output and in the file that it wrote.
-pub fn result(report: &ProgramReport, file: Option<(&Path, MeshFormat)>) -> ProgramResult {
+pub fn result(report: &ProgramReport, file: Option<(&Path, ResultFormat)>) -> ProgramResult {
     use AgainstFailure::{Crashed, Memory, Slow, Unread};
     let failed = |failure, words| ProgramResult::Verdict(AgainstVerdict::Failed(failure, words));
     let said = last_line(&report.errors);
@@ -186,7 +186,7 @@ fn last_line(errors: &str) -> String {
 
 /// The measures of the file, with what the line of JSON states of them; without a file those of the
 /// line.
-fn answered(report: &ProgramReport, file: Option<(&Path, MeshFormat)>) -> ProgramResult {
+fn answered(report: &ProgramReport, file: Option<(&Path, ResultFormat)>) -> ProgramResult {
     let unread = |words: String| {
         let failure = AgainstFailure::Unread;
         ProgramResult::Verdict(AgainstVerdict::Failed(failure, words))
@@ -238,6 +238,7 @@ fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use premio_verify::against::mesh::MeshFormat;
 
     fn of(end: ProgramEnd, output: &str, errors: &str) -> ProgramResult {
         let report = ProgramReport {
@@ -299,7 +300,12 @@ mod tests {
             errors: String::new(),
             seconds: 1.0,
         };
-        let of = |output: &str| result(&report(output), Some((&path, MeshFormat::Off)));
+        let of = |output: &str| {
+            result(
+                &report(output),
+                Some((&path, ResultFormat::Mesh(MeshFormat::Off))),
+            )
+        };
         let unread = |result: &ProgramResult| matches!(result, ProgramResult::Verdict(v) if v.has(AgainstFindingKind::Unread));
         assert!(unread(&of("")));
         std::fs::write(&path, "OFF 0 0 0\n").unwrap();

@@ -69,6 +69,36 @@ impl<const D: usize> StepSpline<D> {
     }
 }
 
+/// The number of places of a knot span from which the nearest point is searched, and of the halvings
+/// of the interval around the best.
+const PLACES: u32 = 16;
+const HALVED: u32 = 100;
+
+impl StepSpline<3> {
+    /// The parameter of the point that is nearest to another.
+    pub fn nearest(&self, p: &Point3<f64>) -> f64 {
+        let distance = |t: f64| (Point3::from(self.at(t)[0]) - p).norm_squared();
+        let [lo, hi] = self.range();
+        let spans = self.knots.windows(2).filter(|k| k[1] > k[0]);
+        let spans = spans.filter(|k| k[0] >= lo && k[1] <= hi);
+        let places = spans.flat_map(|k| {
+            let step = (k[1] - k[0]) / f64::from(PLACES);
+            (0..=PLACES).map(move |i| (k[0] + step * f64::from(i), step))
+        });
+        let best = places.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        let (at, step) = best.unwrap_or((lo, 0.0));
+        let (mut a, mut b) = ((at - step).max(lo), (at + step).min(hi));
+        for _ in 0..HALVED {
+            let third = (b - a) / 3.0;
+            match distance(a + third) < distance(b - third) {
+                true => b -= third,
+                false => a += third,
+            }
+        }
+        0.5 * (a + b)
+    }
+}
+
 /// A curve in space.
 #[derive(Clone, Debug)]
 pub enum StepCurve {

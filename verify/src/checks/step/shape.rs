@@ -4,7 +4,7 @@ use super::curve::{Placement, StepCurve, StepSpline};
 use super::part21::{Instances, StepInstance, StepReadError, StepValue};
 use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// An edge.
@@ -54,11 +54,24 @@ pub struct StepShape {
     pub solids: Vec<Vec<Vec<StepFace>>>,
 }
 
+/// What a reader takes for granted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepOrigin {
+    /// This program wrote the file: bounds and edges are not turned, and curves in parameters are
+    /// splines.
+    Ours,
+    /// Another program wrote it: bounds and edges may be turned, and curves in parameters are left
+    /// out.
+    Others,
+}
+
 impl StepShape {
     /// The solids of a file.
-    pub fn new(instances: &Instances) -> Result<Self, StepReadError> {
+    pub fn new(instances: &Instances, origin: StepOrigin) -> Result<Self, StepReadError> {
         let mut reader = Reader {
             instances,
+            origin,
+            turned: HashSet::new(),
             shape: Self::default(),
         };
         let mut solids: Vec<u32> = Vec::new();
@@ -77,8 +90,14 @@ impl StepShape {
     }
 }
 
+/// The distance of a spline's end from a vertex that is taken for it, relative to the edge's ends.
+const CLOSE: f64 = 1.0 / (1 << 20) as f64;
+
 struct Reader<'i> {
     instances: &'i Instances,
+    origin: StepOrigin,
+    /// The edges that run against their curves; they are read along them.
+    turned: HashSet<u32>,
     shape: StepShape,
 }
 
@@ -199,7 +218,8 @@ impl<'i> Reader<'i> {
         let mut loops = Vec::new();
         for bound in face.instances(1)? {
             let bound = self.entity(bound)?;
-            if !bound.truth(2)? {
+            let is_turned = !bound.truth(2)?;
+            if is_turned && self.origin == StepOrigin::Ours {
                 return Err(bound.wrong("a bound that is not turned"));
             }
             let ring = self.named(bound.instance(1)?, "EDGE_LOOP")?;
@@ -208,8 +228,12 @@ impl<'i> Reader<'i> {
                 let oriented = self.named(oriented, "ORIENTED_EDGE")?;
                 let edge = oriented.instance(3)?;
                 self.add_edge(edge)?;
-                let along = oriented.truth(4)?;
+                let along = oriented.truth(4)? != self.turned.contains(&edge);
                 uses.push(StepEdgeUse { edge, along });
+            }
+            if is_turned {
+                uses.reverse();
+                uses.iter_mut().for_each(|used| used.along = !used.along);
             }
             loops.push(uses);
         }
@@ -225,17 +249,25 @@ impl<'i> Reader<'i> {
             return Ok(());
         }
         let edge = self.named(id, "EDGE_CURVE")?;
-        if !edge.truth(4)? {
-            return Err(edge.wrong("an edge along its curve"));
+        let mut ends = [edge.instance(1)?, edge.instance(2)?];
+        match (edge.truth(4)?, self.origin) {
+            (true, _) => {}
+            (false, StepOrigin::Ours) => return Err(edge.wrong("an edge along its curve")),
+            (false, StepOrigin::Others) => {
+                ends.reverse();
+                self.turned.insert(id);
+            }
         }
-        let ends = [edge.instance(1)?, edge.instance(2)?];
         let mut points = [Point3::origin(); 2];
         for (point, vertex) in points.iter_mut().zip(ends) {
             *point = self.point(self.named(vertex, "VERTEX_POINT")?.instance(1)?)?;
         }
         let mut curve = self.entity(edge.instance(3)?)?;
         let mut on = Vec::new();
-        if curve.name == "SURFACE_CURVE" {
+        let on_surfaces = ["SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"];
+        if self.origin == StepOrigin::Others && on_surfaces.contains(&curve.name) {
+            curve = self.entity(curve.instance(1)?)?;
+        } else if curve.name == "SURFACE_CURVE" {
             for pcurve in curve.instances(2)? {
                 let pcurve = self.named(pcurve, "PCURVE")?;
                 let represented = self.named(pcurve.instance(2)?, "DEFINITIONAL_REPRESENTATION")?;
@@ -250,7 +282,26 @@ impl<'i> Reader<'i> {
             curve = self.entity(curve.instance(1)?)?;
         }
         let curve = self.curve(&curve)?;
-        let [lo, mut hi] = [0, 1].map(|k| curve.parameter(&points[k], k == 0));
+        let [mut lo, mut hi] = [0, 1].map(|k| curve.parameter(&points[k], k == 0));
+        if let (StepOrigin::Others, StepCurve::Spline(spline)) = (self.origin, &curve)
+            && ends[0] != ends[1]
+        {
+            // The edge may be a piece of the spline.
+            let range = [lo, hi];
+            let is_end = |k: usize| {
+                let end = Point3::from(spline.at(range[k])[0]);
+                (end - points[k]).norm() <= CLOSE * (points[1] - points[0]).norm()
+            };
+            if !is_end(0) {
+                lo = spline.nearest(&points[0]);
+            }
+            if !is_end(1) {
+                hi = spline.nearest(&points[1]);
+            }
+            if lo >= hi {
+                return Err(edge.wrong("an edge along its spline"));
+            }
+        }
         if curve.is_periodic() && (hi <= lo || ends[0] == ends[1]) {
             hi += if hi - lo > 0.5 * TAU { 0.0 } else { TAU };
         }
@@ -306,10 +357,17 @@ impl<'i> Reader<'i> {
             let point: Result<[f64; D], _> = point.numbers(1)?.try_into();
             points.push(point.map_err(|_| spline.wrong("points of as many coordinates"))?);
         }
-        let counted = spline.numbers(6)?.into_iter().zip(spline.numbers(7)?);
+        let counts = spline.numbers(6)?;
+        // So many that no memory would be enough are no knots.
+        let degree = spline.number(1)?;
+        let is_sound = counts.iter().sum::<f64>() == points.len() as f64 + degree + 1.0;
+        if !is_sound || counts.iter().any(|count| *count < 1.0) {
+            return Err(spline.wrong("as many knots as points ask for, in order"));
+        }
+        let counted = counts.into_iter().zip(spline.numbers(7)?);
         let knots = counted.flat_map(|(count, knot)| std::iter::repeat_n(knot, count as usize));
         let made = StepSpline {
-            degree: spline.number(1)? as usize,
+            degree: degree as usize,
             knots: knots.collect(),
             points,
         };

@@ -37,6 +37,15 @@ pub enum SurfaceForm {
     },
 }
 
+/// What is integrated over a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceQuantity {
+    /// The volume between the face and a point.
+    Volume,
+    /// The area.
+    Area,
+}
+
 /// A point at which the angle about the axis is undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
@@ -121,8 +130,29 @@ impl StepSurface {
         }
     }
 
-    /// P at given parameters, relative to a reference point.
-    pub fn flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
+    /// P of a quantity at given parameters, relative to a reference point.
+    pub fn flow(&self, quantity: FaceQuantity, at: [f64; 2], about: &Point3<f64>) -> f64 {
+        match quantity {
+            FaceQuantity::Volume => self.volume_flow(at, about),
+            FaceQuantity::Area => self.area_flow(at[1]),
+        }
+    }
+
+    /// P of the area, whose F is the length of S_u × S_v.
+    fn area_flow(&self, v: f64) -> f64 {
+        match self.form {
+            SurfaceForm::Plane => v,
+            SurfaceForm::Cylinder { radius } => radius * v,
+            SurfaceForm::Cone { radius, slope } => {
+                let rho = radius + v * slope;
+                0.5 * rho * rho / slope * (1.0 + slope * slope).sqrt()
+            }
+            SurfaceForm::Sphere { radius } => radius * radius * (v.sin() + 1.0),
+            SurfaceForm::Torus { major, minor } => minor * (major * v + minor * v.sin()),
+        }
+    }
+
+    fn volume_flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
         let o = self.place.turned(&(self.place.origin - about));
         let (sin_u, cos_u) = u.sin_cos();
         let out = o.x * cos_u + o.y * sin_u;
@@ -150,10 +180,19 @@ impl StepSurface {
     }
 
     /// The integral of P du at a pole, from one angle to another.
-    pub fn flow_at_pole(&self, pole: Pole, [from, to]: [f64; 2], about: &Point3<f64>) -> f64 {
+    pub fn flow_at_pole(
+        &self,
+        quantity: FaceQuantity,
+        pole: Pole,
+        [from, to]: [f64; 2],
+        about: &Point3<f64>,
+    ) -> f64 {
         let (SurfaceForm::Sphere { radius }, Pole::North) = (self.form, pole) else {
             return 0.0;
         };
+        if quantity == FaceQuantity::Area {
+            return 2.0 * radius * radius * (to - from);
+        }
         let o = self.place.turned(&(self.place.origin - about));
         let out = o.x * (to.sin() - from.sin()) - o.y * (to.cos() - from.cos());
         radius * radius * (2.0 * radius * (to - from) + FRAC_PI_2 * out) / 3.0

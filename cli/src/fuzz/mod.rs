@@ -1,12 +1,14 @@
 //! Fuzzing runs: many seeds distributed to worker processes, and their findings.
 //!
 //! [`worker`] runs [`premio_verify::trial`] on a part in a process that may hang or die, and
-//! [`against`] another program on the same part; [`run`] distributes many parts to threads, [`state`]
+//! [`comparison`] another program on the same part ([`against`]); [`run`] distributes many parts to threads, [`state`]
 //! keeps the finished ones, [`summary`] reports them, and [`archive`] keeps the models. [`item`] has
-//! the parts, and [`finding`] what is found.
+//! the parts, [`examine`] what is determined of one, and [`finding`] what is found.
 
 pub mod against;
 pub mod archive;
+pub mod comparison;
+pub mod examine;
 pub mod finding;
 pub mod item;
 pub mod run;

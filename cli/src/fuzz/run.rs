@@ -3,10 +3,10 @@
 use super::FuzzError;
 use super::against::verdict::AgainstFindingKind;
 use super::archive::Archive;
+use super::examine::{Examine, Examined, ModelOrigin};
 use super::finding::Finds;
 use super::item::{FileModel, Item};
 use super::state::RunState;
-use super::worker::{Examine, Examined, ModelOrigin};
 use premio_verify::generator::model::PartModel;
 use premio_verify::generator::shrink::shrink;
 use premio_verify::generator::write::{Format, write};

@@ -2,9 +2,9 @@
 
 use super::FuzzError;
 use super::against::tally::AgainstTally;
+use super::examine::Examined;
 use super::finding::{Find, Finds};
 use super::item::{Item, TreeSource};
-use super::worker::Examined;
 use crate::diagnostics::CliError;
 use crate::session::InputLimits;
 use premio_text::Document;

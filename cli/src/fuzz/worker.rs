@@ -4,8 +4,7 @@
 //! until it dies or takes too long; then it is ended. The tree is tried once more in a new process,
 //! which alone counts, so that a failure is caused by the tree and not by earlier ones.
 
-use super::against::tally::AgainstOutcome;
-use super::item::Item;
+use super::examine::{Examine, Examined, ModelOrigin};
 use premio_verify::generator::model::PartModel;
 use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, guarded};
 use std::fs::File;
@@ -15,39 +14,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
-
-/// The tree of a run that a model is, or that it was shrunk from.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct ModelOrigin {
-    /// The tree of the run.
-    pub item: Item,
-    /// Whether the model is the whole tree.
-    pub is_whole: bool,
-}
-
-/// The outcomes of a tree.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Examined {
-    /// Of our own trial.
-    pub outcome: TrialOutcome,
-    /// Of another program.
-    pub against: Option<AgainstOutcome>,
-}
-
-impl From<TrialOutcome> for Examined {
-    fn from(outcome: TrialOutcome) -> Self {
-        Self {
-            outcome,
-            against: None,
-        }
-    }
-}
-
-/// An examiner of trees.
-pub trait Examine {
-    /// The outcomes of a tree; none where the run shall stop.
-    fn examine(&mut self, model: &PartModel, origin: &ModelOrigin) -> io::Result<Option<Examined>>;
-}
 
 /// A process that examines trees, started on demand.
 #[derive(Debug)]

@@ -1,90 +1,9 @@
 //! The measures of the mesh that another program wrote.
 
 use super::answer::{StatedAccuracy, StatedMeasures};
-use super::mesh_file;
+use super::mesh_file::{MAX_TRIANGLES, MeshFormat, MeshReadError, ReadMesh, read};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
-use std::fmt;
-
-/// A format of meshes.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum MeshFormat {
-    /// STL, binary or text.
-    Stl,
-    /// The object file format of Geomview.
-    Off,
-    /// Wavefront OBJ.
-    Obj,
-}
-
-impl MeshFormat {
-    /// Every format.
-    pub const ALL: [Self; 3] = [Self::Stl, Self::Off, Self::Obj];
-
-    /// The ending of its files.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Stl => "stl",
-            Self::Off => "off",
-            Self::Obj => "obj",
-        }
-    }
-}
-
-/// Why a mesh has no measures.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MeshReadError {
-    /// The file is no text.
-    #[error("byte {byte}: expected a text in UTF-8")]
-    Text {
-        /// The offset of the first other byte.
-        byte: usize,
-    },
-    /// A line has another form.
-    #[error("line {line}: expected {expected}")]
-    Line {
-        /// The line, from 1.
-        line: usize,
-        /// What was expected.
-        expected: &'static str,
-    },
-    /// A triangle of a binary file has a coordinate that is not finite.
-    #[error("triangle {number}: expected finite numbers")]
-    Triangle {
-        /// The triangle, from 1.
-        number: usize,
-    },
-    /// There are too many triangles.
-    #[error("found {count} triangles, expected at most {MAX_TRIANGLES}")]
-    TooMany {
-        /// Their number.
-        count: usize,
-    },
-    /// A side has not as many triangles in one sense as in the other.
-    #[error("the mesh is not closed, or not oriented, at ({:.6}, {:.6}, {:.6})", .place[0], .place[1], .place[2])]
-    Open {
-        /// An end of such a side.
-        place: [f64; 3],
-    },
-}
-
-/// The largest number of triangles: their sides have to fit into memory.
-const MAX_TRIANGLES: usize = 1 << 23;
-
-/// The triangles of a file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct ReadMesh {
-    pub points: Vec<[f64; 3]>,
-    pub triangles: Vec<[usize; 3]>,
-    /// Whether the coordinates were rounded to single precision.
-    pub is_single_precision: bool,
-}
-
-impl fmt::Display for MeshFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.ending())
-    }
-}
 
 /// The measures of a closed mesh, by the divergence theorem. The bounds are those of its corners;
 /// the solids are the outer shells, where no side has more than two triangles.
@@ -92,7 +11,7 @@ impl fmt::Display for MeshFormat {
 /// # Errors
 /// The file is not of this format, or the mesh is not closed.
 pub fn measures(bytes: &[u8], format: MeshFormat) -> Result<StatedMeasures, MeshReadError> {
-    mesh_file::read(bytes, format)?.measures()
+    read(bytes, format)?.measures()
 }
 
 /// A side of triangles, with the numbers of those in each sense.

@@ -1,11 +1,91 @@
 //! Triangles of files of other programs: STL, binary or text, OFF and OBJ.
 
-use super::mesh::{MeshFormat, MeshReadError, ReadMesh};
 use std::collections::HashMap;
+use std::fmt;
 use std::str::SplitWhitespace;
 
+/// A format of meshes.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum MeshFormat {
+    /// STL, binary or text.
+    Stl,
+    /// The object file format of Geomview.
+    Off,
+    /// Wavefront OBJ.
+    Obj,
+}
+
+impl MeshFormat {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::Stl, Self::Off, Self::Obj];
+
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Off => "off",
+            Self::Obj => "obj",
+        }
+    }
+}
+
+/// Why a mesh has no measures.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshReadError {
+    /// The file is no text.
+    #[error("byte {byte}: expected a text in UTF-8")]
+    Text {
+        /// The offset of the first other byte.
+        byte: usize,
+    },
+    /// A line has another form.
+    #[error("line {line}: expected {expected}")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A triangle of a binary file has a coordinate that is not finite.
+    #[error("triangle {number}: expected finite numbers")]
+    Triangle {
+        /// The triangle, from 1.
+        number: usize,
+    },
+    /// There are too many triangles.
+    #[error("found {count} triangles, expected at most {MAX_TRIANGLES}")]
+    TooMany {
+        /// Their number.
+        count: usize,
+    },
+    /// A side has not as many triangles in one sense as in the other.
+    #[error("the mesh is not closed, or not oriented, at ({:.6}, {:.6}, {:.6})", .place[0], .place[1], .place[2])]
+    Open {
+        /// An end of such a side.
+        place: [f64; 3],
+    },
+}
+
+/// The largest number of triangles: their sides have to fit into memory.
+pub(super) const MAX_TRIANGLES: usize = 1 << 23;
+
+/// The triangles of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ReadMesh {
+    pub points: Vec<[f64; 3]>,
+    pub triangles: Vec<[usize; 3]>,
+    /// Whether the coordinates were rounded to single precision.
+    pub is_single_precision: bool,
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.ending())
+    }
+}
+
 /// Reads a file.
-pub fn read(bytes: &[u8], format: MeshFormat) -> Result<ReadMesh, MeshReadError> {
+pub(super) fn read(bytes: &[u8], format: MeshFormat) -> Result<ReadMesh, MeshReadError> {
     match format {
         MeshFormat::Stl if is_binary_stl(bytes) => binary_stl(bytes),
         MeshFormat::Stl => text_stl(text(bytes)?),

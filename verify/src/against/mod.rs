@@ -9,6 +9,6 @@ pub mod answer;
 pub mod comparison;
 pub mod import;
 pub mod mesh;
-mod mesh_file;
+pub mod mesh_file;
 pub mod result_file;
 pub mod template;

@@ -1,7 +1,8 @@
 //! The measures of a file that another program wrote.
 
 use super::answer::StatedMeasures;
-use super::mesh::{MeshFormat, MeshReadError, measures as mesh_measures};
+use super::mesh::measures as mesh_measures;
+use super::mesh_file::{MeshFormat, MeshReadError};
 use crate::checks::step::foreign::{StepMeasureError, measures as step_measures};
 use std::fmt;
 

@@ -1,12 +1,13 @@
 //! The examiner of trees by ourselves and by another program.
 
-use super::command::AgainstCommand;
-use super::launch::ProgramLimits;
-use super::process::{ProgramEnd, run};
-use super::tally::{AgainstOutcome, AgainstTimes};
-use super::verdict::{AgainstVerdict, ProgramResult, result};
-use crate::fuzz::item::{FileModel, Item, TreeSource};
-use crate::fuzz::worker::{Examine, Examined, ModelOrigin, Worker};
+use super::against::command::AgainstCommand;
+use super::against::launch::ProgramLimits;
+use super::against::process::{ProgramEnd, run};
+use super::against::tally::{AgainstOutcome, AgainstTimes};
+use super::against::verdict::{AgainstVerdict, ProgramResult, result};
+use super::examine::{Examine, Examined, ModelOrigin};
+use super::item::{FileModel, Item, TreeSource};
+use super::worker::Worker;
 use premio_verify::against::comparison::KnownPart;
 use premio_verify::against::template::ModelTemplate;
 use premio_verify::generator::model::PartModel;

@@ -251,7 +251,9 @@ fn files(pages: &[Page]) -> BTreeMap<String, String> {
     for entry in fs::read_dir(root().join("examples")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        files.insert(name, fs::read_to_string(path).unwrap());
+        if path.is_file() {
+            files.insert(name, fs::read_to_string(path).unwrap());
+        }
     }
     files
 }

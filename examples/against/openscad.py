@@ -14,6 +14,8 @@ import tempfile
 from pathlib import Path
 
 EMPTY = "top level object is empty"
+# Points are written with six digits.
+TOLERANCE = 1e-4
 
 
 def mesh(text, segments):
@@ -63,6 +65,7 @@ def main():
     print(json.dumps({
         "volume": finer_volume,
         "area": finer_area,
+        "tolerance": TOLERANCE,
         "volume_error": 2 * abs(finer_volume - volume),
         "area_error": 2 * abs(finer_area - area),
     }))

@@ -93,9 +93,11 @@ fn tail(mut file: File, most: u64) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The statuses by which a shell reports a signal; the first one stands for none.
+/// The statuses by which a shell reports a signal: its number beyond this one.
 #[cfg(unix)]
-const SIGNALS_OF_SHELL: std::ops::RangeInclusive<i32> = 128..=159;
+const SIGNALS_OF_SHELL: std::ops::RangeInclusive<i32> = NO_SIGNAL + 1..=NO_SIGNAL + 31;
+#[cfg(unix)]
+const NO_SIGNAL: i32 = 128;
 
 #[cfg(unix)]
 fn end(status: ExitStatus) -> ProgramEnd {
@@ -103,7 +105,7 @@ fn end(status: ExitStatus) -> ProgramEnd {
     match (status.code(), status.signal()) {
         // A shell ends so where a signal ended its program.
         (Some(code), _) if SIGNALS_OF_SHELL.contains(&code) => {
-            ProgramEnd::Signalled(code - SIGNALS_OF_SHELL.start())
+            ProgramEnd::Signalled(code - NO_SIGNAL)
         }
         (Some(code), _) => ProgramEnd::Exited(code),
         (None, signal) => ProgramEnd::Signalled(signal.unwrap_or_default()),

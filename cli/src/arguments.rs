@@ -133,7 +133,7 @@ pub struct DescriptionOptions {
     /// Refuse the part where a decision was closer than a hundred to one
     #[arg(long)]
     pub strict: bool,
-    /// Accept only proven coincidences, some hundred times slower
+    /// Accept only proven coincidences, ten to a hundred times slower
     #[arg(long, conflicts_with = "resolution")]
     pub exact: bool,
     /// Make no decision in f64: the same boundary in extended precision (237 bits), some hundred

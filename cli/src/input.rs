@@ -146,11 +146,11 @@ fn evaluated(
 /// The note on a part without a solid.
 pub const EMPTY: &str = "the part is empty: it has no solid";
 
-/// The reason why some parts have no view.
+/// The reason why some parts are not predicted or searched for.
 const UNSEEN: &str = "surfaces are so nearly coincident that f64 cannot separate them: \
-    the boundary is known, but views are not computed in extended precision";
+    the boundary is known, but predictions are not computed in extended precision";
 
-/// The resolution for views of a part.
+/// The resolution for the views of predictions and searches.
 pub fn view_resolution(part: &EvaluatedPart) -> Result<f64, CliError> {
     let resolution = part.solid.evaluation().view_resolution();
     resolution.ok_or_else(|| CliError::limit(format!("{}: {UNSEEN}", part.name)))

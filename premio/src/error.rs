@@ -67,12 +67,21 @@ pub enum Error {
     /// The boundary cannot be determined.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    /// The precision of views is too low for the solid.
+    /// The precision of predictions and searches is too low for the solid.
     #[error(
         "surfaces are so nearly coincident that f64 cannot separate them: the boundary is known, \
-         but views need more precision"
+         but predictions need more precision"
     )]
     NoView,
+    /// The precision of views is too low for the solid, and rays contradict one.
+    #[error(
+        "surfaces are so nearly coincident that f64 cannot separate them: the boundary is known, \
+         but rays contradict the view: {detail}"
+    )]
+    UncertainView {
+        /// What they contradict.
+        detail: String,
+    },
     /// A camera is invalid.
     #[error(transparent)]
     Camera(#[from] CameraError),

@@ -40,6 +40,14 @@ struct ViewData {
     projection: Projection,
 }
 
+/// Confirms by rays the view of a solid whose boundary f64 does not give.
+fn confirm(solid: &Solid, seen: &Contours) -> Result<()> {
+    match solid.contradiction(seen) {
+        Some(detail) => Err(Error::UncertainView { detail }),
+        None => Ok(()),
+    }
+}
+
 /// Shows the counts of its arcs and junctions.
 impl fmt::Debug for View {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,7 +62,15 @@ impl fmt::Debug for View {
 impl View {
     pub(crate) fn new(solid: &Solid, camera: &Camera) -> Result<Self> {
         let camera = camera.resolve(solid)?;
-        let contours = contours(solid.brep(), &camera, solid.view_resolution()?)?;
+        let known = solid.evaluation();
+        let contours = match known.view_resolution() {
+            Some(resolution) => contours(solid.brep(), &camera, resolution)?,
+            None => {
+                let seen = contours(solid.brep(), &camera, known.rounded_view_resolution())?;
+                confirm(solid, &seen)?;
+                seen
+            }
+        };
         Ok(Self(Arc::new(ViewData {
             solid: solid.clone(),
             contours,

@@ -64,7 +64,6 @@ fn seen(
     camera: &Camera,
     given: Option<&Given<'_>>,
 ) -> Result<View, CliError> {
-    input::view_resolution(part)?;
     let beyond = |error: &dyn std::fmt::Display| CliError::limit(format!("{}: {error}", part.name));
     let failed = |error: premio::Error| match &error {
         premio::Error::View(view) => {
@@ -72,7 +71,7 @@ fn seen(
             refused.unwrap_or_else(|| beyond(&error))
         }
         premio::Error::Camera(_) if given.is_some() => CliError::input(error.to_string()),
-        error => CliError::limit(error.to_string()),
+        error => beyond(error),
     };
     part.solid.view(camera).map_err(failed)
 }

@@ -65,7 +65,7 @@ pub(super) fn arrange<'t, N: Float>(
     let mut later = Later::default();
     let mut entities = found.meetings.len();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, predicates, &mut corners, &mut later);
+        found.cut_meeting(i, solids, predicates, &mut corners, &mut later)?;
         entities += found.meetings[i].cuts.len();
         bounded(entities, most)?;
     }

@@ -42,6 +42,15 @@ pub enum EvaluationError {
         /// The resolution.
         resolution: f64,
     },
+    /// A curve runs so close to a surface that their common points cannot be separated.
+    #[error(
+        "the points near ({:.6}, {:.6}, {:.6}) in which a curve intersects a surface cannot be separated: they nearly coincide there",
+        place[0], place[1], place[2]
+    )]
+    InseparablePoints {
+        /// The approximate location.
+        place: [f64; 3],
+    },
     /// The walls of a frustum are nearly those of a cylinder.
     #[error(
         "the apex of the frustum near ({:.6}, {:.6}, {:.6}) is {away:.1e} away: rounding moves its walls by more than the resolution",
@@ -119,6 +128,7 @@ impl EvaluationError {
             | Self::UndecidedClosedFace { .. }
             | Self::Assembly(_)
             | Self::IllConditioned { .. }
+            | Self::InseparablePoints { .. }
             | Self::InvalidBoundary(_)
             | Self::Contradiction { .. }
             | Self::NearCylinder { .. }

@@ -8,7 +8,9 @@ use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::double_double::F106;
 use premio_kernel::number::extended::F237;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::{Compare, DecisionStats, Predicates, ROUNDING};
+use premio_kernel::number::predicates::{
+    Compare, DecisionStats, Predicates, RELATIVE_RESOLUTION, ROUNDING,
+};
 use std::sync::OnceLock;
 
 /// The boundary of a tree, with the statistics of its decisions.
@@ -59,6 +61,13 @@ impl Evaluation {
     /// give this boundary: surfaces rounded to f64 may coincide although the exact ones do not.
     pub fn view_resolution(&self) -> Option<f64> {
         self.view_resolution
+    }
+
+    /// The resolution for views where f64 does not give this boundary: the default one. Such a view
+    /// has to be confirmed.
+    pub fn rounded_view_resolution(&self) -> f64 {
+        self.resolution
+            .max(RELATIVE_RESOLUTION * self.bounds.diagonal())
     }
 
     /// The resolution that f64 supports for the boundary, however finely it was evaluated.

@@ -61,7 +61,7 @@ use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
 use premio_kernel::brep::check::{check, worst_gap};
-use premio_kernel::brep::face_integrals::FaceIntegrals;
+use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
@@ -181,17 +181,31 @@ fn is_worth(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
     error.is_of_rounding() && tree.leaves().count() <= few
 }
 
-/// The close call because of which a part is empty in f64 but a solid in 106 bits.
+/// The close call because of which a part is empty in f64 but a solid in more bits.
 fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<CloseCall> {
     let is_asked = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
         && tree.leaves().count() <= FEW_IN_106_BITS;
-    let options = EvaluationOptions::default();
-    let fine = is_asked.then(|| finely::<F106>(tree, &options).ok())??;
+    let mass = is_asked.then(|| finest_mass(tree).ok())??;
     let written = noise.unwrap_or(0.0) * known.bounds.diagonal();
     let noise = vanished::rounding(tree, &known.bounds).max(written);
-    vanished::remainder(&fine.measures.mass(&fine.brep), noise)
+    vanished::remainder(&mass, noise)
 }
+
+/// The mass properties with a resolution far below the precision of an f64.
+fn finest_mass(tree: &Tree) -> Result<Mass, EvaluationError> {
+    let size = HalfSpaceModel::<F106>::new(tree).bounds.diagonal();
+    let options = EvaluationOptions {
+        resolution: Some(BELOW_DOUBLES * f64::EPSILON * size),
+        ..EvaluationOptions::default()
+    };
+    let fine = evaluated::<F106>(tree, &options)?;
+    Ok(fine.measures.mass(&fine.brep))
+}
+
+/// The resolution at which the thickness of a part is measured, relative to the precision of an
+/// f64.
+const BELOW_DOUBLES: f64 = 1.0 / 16.0;
 
 /// Evaluates with the resolution, and if that contradicts itself, with the finest one, unless a
 /// resolution is requested.

@@ -3,6 +3,7 @@
 
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pass};
 use super::close_calls::{Between, Unlisted};
+use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use super::vertices::VertexMerger;
 use nalgebra::{Point3, Vector3};
@@ -45,7 +46,7 @@ impl<N: Float> Arrangement<N> {
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
-    ) {
+    ) -> Result<(), EvaluationError> {
         let m = &self.meetings[index];
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
         let mut near: Vec<CarrierFace> = Vec::new();
@@ -63,7 +64,7 @@ impl<N: Float> Arrangement<N> {
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
-            match self.cuts_by(index, faces, &known, predicates, corners, later) {
+            match self.cuts_by(index, faces, &known, predicates, corners, later)? {
                 Some(found) => cuts.extend(found),
                 None => holding.push(faces[0].carrier),
             }
@@ -72,6 +73,7 @@ impl<N: Float> Arrangement<N> {
         m.carriers.extend(holding);
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
+        Ok(())
     }
 
     /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.
@@ -83,7 +85,7 @@ impl<N: Float> Arrangement<N> {
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
-    ) -> Option<Vec<Cut<N>>> {
+    ) -> Result<Option<Vec<Cut<N>>>, EvaluationError> {
         let carrier = faces[0].carrier;
         let m = &self.meetings[index];
         let mut cuts = self.special_points(index, carrier, known, predicates, corners);
@@ -98,14 +100,16 @@ impl<N: Float> Arrangement<N> {
             special: special.collect(),
             predicates,
         };
-        let found = m.intersection(&self.carriers[carrier], faces, predicates)?;
+        let Some(found) = m.intersection(&self.carriers[carrier], faces, predicates)? else {
+            return Ok(None);
+        };
         for root in &found.roots {
             cuts.extend(crossed.cut_at(root, corners, later));
         }
         for miss in &found.misses {
             later.calls.extend(crossed.near_miss(miss));
         }
-        Some(cuts)
+        Ok(Some(cuts))
     }
 
     /// Moves an inaccurate cut to an accurate corner, if there is one within its reach.
@@ -384,10 +388,10 @@ impl<N: Float> IntersectionCurve<N> {
         surface: &Surface<N>,
         faces: &[CarrierFace],
         predicates: &Predicates,
-    ) -> Option<CurveSurfaceRoots<N>> {
+    ) -> Result<Option<CurveSurfaceRoots<N>>, EvaluationError> {
         let resolution = predicates.resolution();
         if lies_on(&self.curve, self.range, surface, resolution) {
-            return None;
+            return Ok(None);
         }
         let mut all = CurveSurfaceRoots::default();
         let near = |b: &Aabb| {
@@ -399,12 +403,17 @@ impl<N: Float> IntersectionCurve<N> {
             parts = &parts[first..];
             let count = parts.iter().take_while(|p| near(&p.bounds)).count();
             let range = [parts[0].range[0], parts[count - 1].range[1]];
-            let found = roots(&self.curve, range, surface, resolution);
+            let found = roots(&self.curve, range, surface, resolution).map_err(|_| {
+                let middle = self.curve.point(N::HALF * (range[0] + range[1]));
+                EvaluationError::InseparablePoints {
+                    place: rounded(&middle),
+                }
+            })?;
             all.roots.extend(found.roots);
             all.misses.extend(found.misses);
             parts = &parts[count..];
         }
-        Some(all)
+        Ok(Some(all))
     }
 
     /// The distance from a point of tangency at which the curve leaves the surface by more than the

@@ -10,7 +10,9 @@ use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::probes::probes;
-use crate::number::roots::{NearMiss, Root, RootKind, Roots, isolate, isolate_closely};
+use crate::number::roots::{
+    Inseparable, NearMiss, Root, RootKind, Roots, isolate, isolate_closely,
+};
 use nalgebra::Point3;
 use std::borrow::Cow;
 
@@ -116,24 +118,28 @@ pub struct CurveSurfaceRoots<N: Float = f64> {
 
 /// Intersects a part of a curve, however short, that does not lie on the surface: the roots, and
 /// all near misses that are close calls.
+///
+/// # Errors
+/// In extended precision: the curve runs so close to the surface that the roots cannot be
+/// separated.
 pub fn roots<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
     resolution: N,
-) -> CurveSurfaceRoots<N> {
+) -> Result<CurveSurfaceRoots<N>, Inseparable> {
     if let Some(known) = rounded_roots(curve, range, surface, resolution) {
-        return known;
+        return Ok(known);
     }
     let breaks = curve.breaks(range[0], range[1]);
-    let zeros = match isolate_closely(&Height::new(curve, surface), &breaks, resolution) {
+    let zeros = match isolate_closely(&Height::new(curve, surface), &breaks, resolution)? {
         Roots::Everywhere => touching(range),
         zeros => zeros,
     };
-    match zeros {
+    Ok(match zeros {
         Roots::At { roots, misses } => CurveSurfaceRoots { roots, misses },
         Roots::Everywhere => CurveSurfaceRoots::default(),
-    }
+    })
 }
 
 /// The roots of a curve in extended precision: isolated in f64, if the rounded curve is far closer
@@ -160,7 +166,7 @@ fn rounded_roots<N: Float>(
     }
     let height = Height::new(curve, surface);
     let ends = range.map(N::rounded);
-    let found = roots(&rounded, ends, &surface.to_f64(), resolution.rounded());
+    let found = roots(&rounded, ends, &surface.to_f64(), resolution.rounded()).ok()?;
     let settled = |t: f64| {
         let mut t = N::from_f64(t);
         for _ in 0..STEPS {

@@ -56,6 +56,14 @@ pub enum Roots<N: Float = f64> {
     },
 }
 
+impl<N: Float> Roots<N> {
+    /// No root and no near miss.
+    const NONE: Self = Self::At {
+        roots: Vec::new(),
+        misses: Vec::new(),
+    };
+}
+
 /// A local minimum of a function's absolute value close to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearMiss<N: Float = f64> {
@@ -123,24 +131,45 @@ struct Search<'a, F, N: Float> {
 /// a closed curve the breaks span a whole period, and the caller identifies its ends. Near misses
 /// are not searched for.
 pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
-    search(f, breaks, resolution, resolution)
+    // Without a limit, there is no error.
+    search(f, breaks, resolution, resolution, u32::MAX).unwrap_or(Roots::NONE)
 }
 
 /// The roots, and all near misses that are close calls.
+///
+/// # Errors
+/// The roots take too many halvings.
 pub(crate) fn isolate_closely<N: Float, F: Function<N>>(
     f: &F,
     breaks: &[N],
     resolution: N,
-) -> Roots<N> {
-    search(f, breaks, resolution, N::from_f64(CLOSE) * resolution)
+) -> Result<Roots<N>, Inseparable> {
+    let most = match N::IS_DOUBLE {
+        true => u32::MAX,
+        false => MOST,
+    };
+    search(f, breaks, resolution, N::from_f64(CLOSE) * resolution, most)
 }
 
-fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N, reach: N) -> Roots<N> {
+/// A function stays so close to zero over a range, relative to its rounding error, that its roots
+/// cannot be separated in reasonable time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the points of a curve close to a surface cannot be separated")]
+pub struct Inseparable;
+
+/// The most halvings of a piece in extended precision. The pieces of all named cases take fewer
+/// than a hundred.
+const MOST: u32 = 1 << 12;
+
+fn search<N: Float, F: Function<N>>(
+    f: &F,
+    breaks: &[N],
+    resolution: N,
+    reach: N,
+    most: u32,
+) -> Result<Roots<N>, Inseparable> {
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        return Roots::At {
-            roots: Vec::new(),
-            misses: Vec::new(),
-        };
+        return Ok(Roots::NONE);
     };
     let floor =
         (last - first).abs().max(first.abs()).max(last.abs()) * N::EPSILON * N::from_f64(64.0);
@@ -153,9 +182,9 @@ fn search<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N, reach: N
         profile: MonotoneSamples::default(),
     };
     for pair in breaks.windows(2) {
-        search.piece(pair[0], pair[1]);
+        search.piece(pair[0], pair[1], most)?;
     }
-    search.finish(first, last)
+    Ok(search.finish(first, last))
 }
 
 impl<N: Float, F: Function<N>> Search<'_, F, N> {
@@ -214,7 +243,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
     }
 
     /// Isolates the roots in [a, b] in order, by halving with an explicit stack.
-    fn piece(&mut self, a: N, b: N) {
+    fn piece(&mut self, a: N, b: N, most: u32) -> Result<(), Inseparable> {
         let whole = (a, b);
         let rough = self.f.roughly([a, b]);
         let mut stack = vec![whole];
@@ -235,9 +264,12 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
                 continue;
             }
             halved += 1;
+            if halved > most {
+                return Err(Inseparable);
+            }
             let all = halved >= SOME && halved.is_power_of_two();
             if all && !N::IS_DOUBLE && self.interpolated(a, whole.1) {
-                return;
+                return Ok(());
             }
             if halved > MANY && !N::IS_DOUBLE && self.interpolated(a, b) {
                 continue;
@@ -245,6 +277,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
             stack.push((x.mid(), b));
             stack.push((a, x.mid()));
         }
+        Ok(())
     }
 
     /// Isolates the roots in [a, b] by a polynomial model with an error far below the resolution.

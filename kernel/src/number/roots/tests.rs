@@ -14,7 +14,7 @@ fn k(x: f64) -> Jet<Interval> {
 }
 
 fn misses(f: impl Fn(Jet<Interval>) -> Jet<Interval>, breaks: &[f64]) -> Vec<f64> {
-    match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11) {
+    match isolate_closely(&|t| f(Jet::variable(t)), breaks, 1e-11).unwrap() {
         Roots::At { misses, .. } => misses.iter().map(|m| m.value).collect(),
         Roots::Everywhere => panic!("everywhere"),
     }
@@ -144,7 +144,7 @@ fn what_rounding_hides_is_told_in_few_pieces() {
             dd: dd + noise(1.0),
         }
     };
-    let Roots::At { roots, .. } = isolate_closely(&noisy, &[-1.0, 1.0], 1e-11) else {
+    let Roots::At { roots, .. } = isolate_closely(&noisy, &[-1.0, 1.0], 1e-11).unwrap() else {
         panic!("everywhere");
     };
     assert_eq!(roots.len(), 1, "{roots:?}");

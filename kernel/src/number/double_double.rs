@@ -7,15 +7,14 @@
 
 mod circular;
 
-use super::analytic::sinc_jet;
 use super::extended::F237;
 use super::float::{Analytic, Float};
 use super::gauss_rules::GaussRules;
 use super::legendre::gauss_rules;
 use super::rational::{Rational, from_f64, to_f64};
+use super::wide_float::wide_float;
 use std::cmp::Ordering;
-use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
 /// The sum of two f64, of which `low` is at most half a unit in the last place of `high`.
@@ -178,25 +177,7 @@ impl Div for F106 {
     }
 }
 
-macro_rules! assigning {
-    ($($operator:ident $assign:ident $name:ident $assigning:ident);*) => {
-        $(
-            impl $assign for F106 {
-                fn $assigning(&mut self, o: Self) {
-                    *self = $operator::$name(*self, o);
-                }
-            }
-        )*
-    };
-}
-assigning!(Add AddAssign add add_assign; Sub SubAssign sub sub_assign;
-    Mul MulAssign mul mul_assign; Div DivAssign div div_assign);
-
-impl Sum for F106 {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::ZERO, |sum, x| sum + x)
-    }
-}
+wide_float!(F106);
 
 impl PartialOrd for F106 {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
@@ -204,61 +185,6 @@ impl PartialOrd for F106 {
             Some(Ordering::Equal) => self.low.partial_cmp(&o.low),
             order => order,
         }
-    }
-}
-
-impl num_traits::Zero for F106 {
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn is_zero(&self) -> bool {
-        self.high == 0.0
-    }
-}
-
-impl num_traits::One for F106 {
-    fn one() -> Self {
-        Self::ONE
-    }
-}
-
-impl Analytic for F106 {
-    type Float = Self;
-    fn constant(x: Self) -> Self {
-        x
-    }
-    fn scale(self, k: Self) -> Self {
-        self * k
-    }
-    fn square(self) -> Self {
-        self * self
-    }
-    fn over(self, divisor: Self) -> Self {
-        self / divisor
-    }
-    fn root(self) -> Self {
-        Float::max(self, Self::ZERO).sqrt()
-    }
-    fn sin_cos(self) -> (Self, Self) {
-        circular::sin_cos(self)
-    }
-    fn twice(self, (sin, cos): (Self, Self)) -> (Self, Self) {
-        (Self::TWO * sin * cos, (cos - sin) * (cos + sin))
-    }
-    fn sinh_cosh(self) -> (Self, Self) {
-        let e = self.growth();
-        if !e.high.is_finite() {
-            return (e.copysign(self), e);
-        }
-        let (rise, fall) = (e, e / (e + Self::ONE));
-        let sinh = (Self::HALF * (rise + fall)).copysign(self);
-        (sinh, Self::ONE + Self::HALF * (rise - fall))
-    }
-    fn sinc(self) -> Self {
-        sinc_jet(self)[0]
-    }
-    fn is_like(self, o: Self) -> bool {
-        self.high * o.high > 0.0
     }
 }
 

@@ -2,17 +2,16 @@
 
 mod circular;
 
-use super::analytic::sinc_jet;
 use super::float::{Analytic, Float};
 use super::gauss_rules::GaussRules;
 use super::legendre::gauss_rules;
 use super::rational::Rational;
+use super::wide_float::wide_float;
 use ::f256::{consts, f256};
 use dashu::base::{BitTest, Sign, Signed, UnsignedAbs};
 use dashu::integer::{IBig, UBig};
 use std::cmp::Ordering;
-use std::iter::Sum;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
 /// A binary floating-point number of octuple precision (IEEE 754 binary256).
@@ -26,7 +25,7 @@ const SPARE: isize = 12;
 const DIGITS: isize = 237;
 
 macro_rules! operators {
-    ($($operator:ident $name:ident, $assign:ident $assigning:ident);*) => {
+    ($($operator:ident $name:ident);*) => {
         $(
             impl $operator for F237 {
                 type Output = Self;
@@ -34,16 +33,10 @@ macro_rules! operators {
                     Self(self.0.$name(o.0))
                 }
             }
-            impl $assign for F237 {
-                fn $assigning(&mut self, o: Self) {
-                    *self = $operator::$name(*self, o);
-                }
-            }
         )*
     };
 }
-operators!(Add add, AddAssign add_assign; Sub sub, SubAssign sub_assign;
-    Mul mul, MulAssign mul_assign; Div div, DivAssign div_assign);
+operators!(Add add; Sub sub; Mul mul; Div div);
 
 impl Neg for F237 {
     type Output = Self;
@@ -52,63 +45,7 @@ impl Neg for F237 {
     }
 }
 
-impl Sum for F237 {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::ZERO, |sum, x| sum + x)
-    }
-}
-
-impl num_traits::Zero for F237 {
-    fn zero() -> Self {
-        Self::ZERO
-    }
-    fn is_zero(&self) -> bool {
-        self.0.eq_zero()
-    }
-}
-
-impl num_traits::One for F237 {
-    fn one() -> Self {
-        Self::ONE
-    }
-}
-
-impl Analytic for F237 {
-    type Float = Self;
-    fn constant(x: Self) -> Self {
-        x
-    }
-    fn scale(self, k: Self) -> Self {
-        self * k
-    }
-    fn square(self) -> Self {
-        self * self
-    }
-    fn over(self, divisor: Self) -> Self {
-        self / divisor
-    }
-    fn root(self) -> Self {
-        Float::max(self, Self::ZERO).sqrt()
-    }
-    fn sin_cos(self) -> (Self, Self) {
-        circular::sin_cos(self)
-    }
-    fn twice(self, (sin, cos): (Self, Self)) -> (Self, Self) {
-        (Self::TWO * sin * cos, (cos - sin) * (cos + sin))
-    }
-    fn sinh_cosh(self) -> (Self, Self) {
-        let e = self.growth();
-        let (rise, fall) = (e, e / (e + Self::ONE));
-        let sinh = (Self::HALF * (rise + fall)).copysign(self);
-        (sinh, Self::ONE + Self::HALF * (rise - fall))
-    }
-    fn sinc(self) -> Self {
-        sinc_jet(self)[0]
-    }
-    fn is_like(self, o: Self) -> bool {
-        self * o > Self::ZERO
-    }
-}
+wide_float!(F237);
 
 /// Two to a small power. The biased exponent of one is 2^18 - 1, stored above 108 bits.
 const fn power(n: i128) -> f256 {

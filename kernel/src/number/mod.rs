@@ -23,3 +23,4 @@ pub mod rational;
 pub mod rational_interval;
 pub mod roots;
 pub(crate) mod separation_bound;
+mod wide_float;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::number::wide_float::comparison;
 use proptest::prelude::*;
 
 /// The relative difference from a number of 237 bits, in units of 2^-106.
@@ -86,7 +87,7 @@ proptest! {
         prop_assert_eq!(x.ceil().extended(), w.ceil());
         prop_assert_eq!(x.round().extended(), w.round());
         prop_assert_eq!(x.fract().extended(), w.fract());
-        prop_assert!(x.below().extended_up() >= w);
+        prop_assert!(F237::from_f64(x.below().next_up()) >= w);
         prop_assert!(F237::from_f64(x.below()) <= w && F237::from_f64(x.above()) >= w);
         let rest = x.rem_euclid(y);
         prop_assert!(rest >= F106::ZERO && rest <= Float::abs(y));
@@ -94,66 +95,10 @@ proptest! {
     }
 }
 
-/// The next f64 of a lower bound.
-trait Above {
-    fn extended_up(self) -> F237;
-}
-
-impl Above for f64 {
-    fn extended_up(self) -> F237 {
-        F237::from_f64(self.next_up())
-    }
-}
-
-/// Special values, and ordinary ones.
-const PLACES: [f64; 17] = [
-    0.0, 1e-300, 1e-20, 1e-9, 0.25, 0.5, 0.7, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 10.0, 700.0, 1e9,
-];
-
-fn agrees(a: F106, b: f64, about: (&str, f64, f64)) {
-    let off = (a.rounded() - b).abs();
-    assert!(
-        off <= 4.0 * f64::EPSILON * b.abs(),
-        "{about:?}: {} {b}",
-        a.rounded()
-    );
-}
-
 #[test]
 fn functions_are_those_of_doubles() {
-    for x in PLACES.into_iter().flat_map(|x| [x, -x]) {
-        let w = F106::from_f64(x);
-        let about = |name| (name, x, 0.0);
-        agrees(w.sin(), x.sin(), about("sin"));
-        agrees(w.cos(), x.cos(), about("cos"));
-        agrees(w.atan(), x.atan(), about("atan"));
-        agrees(w.asinh(), x.asinh(), about("asinh"));
-        agrees(w.floor(), x.floor(), about("floor"));
-        agrees(w.ceil(), x.ceil(), about("ceil"));
-        agrees(w.round(), x.round(), about("round"));
-        agrees(w.fract(), x.fract(), about("fract"));
-        if x.abs() <= 700.0 {
-            agrees(w.sinh(), x.sinh(), about("sinh"));
-            agrees(w.cosh(), x.cosh(), about("cosh"));
-        }
-        if x.abs() <= 1.0 {
-            agrees(w.acos(), x.acos(), about("acos"));
-        }
-        if x >= 0.0 {
-            agrees(w.sqrt(), x.sqrt(), about("sqrt"));
-        }
-        if x >= 1.0 {
-            agrees(w.acosh(), x.acosh(), about("acosh"));
-        }
-    }
-    let all = || PLACES.into_iter().flat_map(|x| [x, -x]);
-    for (x, y) in all().flat_map(|x| all().map(move |y| (x, y))) {
-        let (a, b) = (F106::from_f64(x), F106::from_f64(y));
-        agrees(a.atan2(b), x.atan2(y), ("atan2", x, y));
-        agrees(a.hypot(b), x.hypot(y), ("hypot", x, y));
-        agrees(Float::max(a, b), x.max(y), ("max", x, y));
-        agrees(Float::min(a, b), x.min(y), ("min", x, y));
-    }
+    comparison::functions_of_one_number::<F106>();
+    comparison::functions_of_two_numbers::<F106>();
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Trials of many trees on many threads.
 
 use super::FuzzError;
-use super::against::verdict::AgainstFindingKind;
+use super::against::verdict::{AgainstFailure, AgainstFindingKind};
 use super::archive::Archive;
 use super::examine::{Examine, Examined, ModelOrigin};
 use super::finding::Finds;
@@ -327,9 +327,8 @@ impl Way {
     /// The most smaller trees that are tried.
     fn tries(&self) -> usize {
         match self {
-            Self::Wrong(FailureKind::Time) | Self::Against(AgainstFindingKind::Slow) => {
-                TRIES_IN_TIME
-            }
+            Self::Wrong(FailureKind::Time)
+            | Self::Against(AgainstFindingKind::Failure(AgainstFailure::Slow)) => TRIES_IN_TIME,
             Self::Wrong(_) | Self::Refused(_) => TRIES,
             Self::Against(_) | Self::RefusedAgainst(_) => TRIES_AGAINST,
         }

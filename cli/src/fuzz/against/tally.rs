@@ -109,7 +109,7 @@ impl AgainstTally {
             AgainstVerdict::Wrong(differences) => {
                 counts.wrong += 1;
                 for difference in differences {
-                    let kind = difference.measure.into();
+                    let kind = AgainstFindingKind::Measure(difference.measure);
                     let finds = self.faults.entry(kind).or_default();
                     finds.insert(seed, find(difference.to_string()));
                 }
@@ -126,7 +126,10 @@ impl AgainstTally {
                     AgainstFailure::Memory => &mut counts.memory,
                     AgainstFailure::Unread => &mut counts.unread,
                 } += 1;
-                let finds = self.faults.entry(failure.into()).or_default();
+                let finds = self
+                    .faults
+                    .entry(AgainstFindingKind::Failure(failure))
+                    .or_default();
                 finds.insert(seed, find(words));
             }
         }

@@ -29,7 +29,8 @@ pub enum AgainstVerdict {
 }
 
 /// A failure other than a wrong measure.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum AgainstFailure {
     /// A signal ended the program.
     Crashed,
@@ -41,36 +42,10 @@ pub enum AgainstFailure {
     Unread,
 }
 
-/// The kind of a finding.
-#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AgainstFindingKind {
-    /// The volume differs.
-    Volume,
-    /// The area differs.
-    Area,
-    /// The box differs.
-    Bounds,
-    /// The number of solids differs.
-    Solids,
-    /// A signal ended the program.
-    Crashed,
-    /// It had no answer within the limit of time.
-    Slow,
-    /// It had too little memory.
-    Memory,
-    /// Its answer or its file cannot be read.
-    Unread,
-}
-
-impl AgainstFindingKind {
+impl AgainstFailure {
     /// The name, as it is written in the summary.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Volume => "volume",
-            Self::Area => "area",
-            Self::Bounds => "bounds",
-            Self::Solids => "solids",
             Self::Crashed => "crashed",
             Self::Slow => "slow",
             Self::Memory => "memory",
@@ -79,24 +54,22 @@ impl AgainstFindingKind {
     }
 }
 
-impl From<ComparedMeasure> for AgainstFindingKind {
-    fn from(measure: ComparedMeasure) -> Self {
-        match measure {
-            ComparedMeasure::Volume => Self::Volume,
-            ComparedMeasure::Area => Self::Area,
-            ComparedMeasure::Bounds => Self::Bounds,
-            ComparedMeasure::Solids => Self::Solids,
-        }
-    }
+/// The kind of a finding.
+#[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
+#[serde(untagged)]
+pub enum AgainstFindingKind {
+    /// This measure differs.
+    Measure(ComparedMeasure),
+    /// The program failed.
+    Failure(AgainstFailure),
 }
 
-impl From<AgainstFailure> for AgainstFindingKind {
-    fn from(failure: AgainstFailure) -> Self {
-        match failure {
-            AgainstFailure::Crashed => Self::Crashed,
-            AgainstFailure::Slow => Self::Slow,
-            AgainstFailure::Memory => Self::Memory,
-            AgainstFailure::Unread => Self::Unread,
+impl AgainstFindingKind {
+    /// The name, as it is written in the summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measure(measure) => measure.name(),
+            Self::Failure(failure) => failure.name(),
         }
     }
 }
@@ -105,8 +78,10 @@ impl AgainstVerdict {
     /// Whether it has a finding of a kind.
     pub fn has(&self, kind: AgainstFindingKind) -> bool {
         match self {
-            Self::Wrong(differences) => differences.iter().any(|d| kind == d.measure.into()),
-            Self::Failed(failure, _) => kind == (*failure).into(),
+            Self::Wrong(differences) => differences
+                .iter()
+                .any(|d| kind == AgainstFindingKind::Measure(d.measure)),
+            Self::Failed(failure, _) => kind == AgainstFindingKind::Failure(*failure),
             Self::Right | Self::Refused(_) | Self::Unknown => false,
         }
     }
@@ -269,22 +244,42 @@ mod tests {
         assert_eq!(verdict(Exited(3), line, error), refused("not valid"));
         assert_eq!(verdict(Exited(0), line, ""), refused("not valid"));
         for (end, output, errors, kind) in [
-            (Exited(0), "", "", AgainstFindingKind::Unread),
-            (Exited(1), "", "MemoryError", AgainstFindingKind::Memory),
+            (
+                Exited(0),
+                "",
+                "",
+                AgainstFindingKind::Failure(AgainstFailure::Unread),
+            ),
+            (
+                Exited(1),
+                "",
+                "MemoryError",
+                AgainstFindingKind::Failure(AgainstFailure::Memory),
+            ),
             (
                 Signalled(6),
                 "",
                 "std::bad_alloc",
-                AgainstFindingKind::Memory,
+                AgainstFindingKind::Failure(AgainstFailure::Memory),
             ),
             (
                 Signalled(11),
                 "{\"volume\": 2}",
                 "",
-                AgainstFindingKind::Crashed,
+                AgainstFindingKind::Failure(AgainstFailure::Crashed),
             ),
-            (TooLong, "{\"volume\": 2}", "", AgainstFindingKind::Slow),
-            (Signalled(OVER_SIZE), "", "", AgainstFindingKind::Unread),
+            (
+                TooLong,
+                "{\"volume\": 2}",
+                "",
+                AgainstFindingKind::Failure(AgainstFailure::Slow),
+            ),
+            (
+                Signalled(OVER_SIZE),
+                "",
+                "",
+                AgainstFindingKind::Failure(AgainstFailure::Unread),
+            ),
         ] {
             assert!(verdict(end, output, errors).has(kind), "{end:?}");
         }
@@ -306,7 +301,7 @@ mod tests {
                 Some((&path, ResultFormat::Mesh(MeshFormat::Off))),
             )
         };
-        let unread = |result: &ProgramResult| matches!(result, ProgramResult::Verdict(v) if v.has(AgainstFindingKind::Unread));
+        let unread = |result: &ProgramResult| matches!(result, ProgramResult::Verdict(v) if v.has(AgainstFindingKind::Failure(AgainstFailure::Unread)));
         assert!(unread(&of("")));
         std::fs::write(&path, "OFF 0 0 0\n").unwrap();
         let ProgramResult::Measures(found) = of("{\"volume\": 7, \"tolerance\": 0.5}") else {

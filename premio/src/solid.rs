@@ -1,6 +1,6 @@
 //! Solids with their exact boundary.
 
-use crate::check::{checked, contradiction};
+use crate::check::checked;
 use crate::topology::{EdgeRef, FaceRef, VertexRef};
 use crate::{Camera, Error, Expression, Result, View};
 use nalgebra::Point3;
@@ -15,7 +15,6 @@ use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::{CloseCall, CoincidencePolicy, DecisionStats};
 use premio_predict::model::record::DescriptionRecord;
 use premio_verify::checks::CheckReport;
-use premio_visibility::contours::Contours;
 use std::fmt;
 use std::sync::Arc;
 
@@ -422,11 +421,6 @@ impl Solid {
             exact: options.zeros == CoincidencePolicy::Exact,
             ..record
         })
-    }
-
-    /// What rays contradict in a view.
-    pub(crate) fn contradiction(&self, seen: &Contours) -> Option<String> {
-        contradiction(&self.0.tree, &self.0.evaluation, seen)
     }
 
     pub(crate) fn view_resolution(&self) -> Result<f64> {

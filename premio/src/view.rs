@@ -1,5 +1,6 @@
 //! The view of a solid from a camera.
 
+use crate::check::confirmed_contours;
 use crate::topology::{EdgeRef, FaceRef};
 use crate::write::{json_text, whole_file};
 use crate::{Camera, Error, Result, Solid};
@@ -8,7 +9,6 @@ use premio_drawing::sheet::{Sheet, SheetOptions, SheetView, StandardView};
 use premio_drawing::{Drawing, DrawingOptions, dxf, svg};
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::camera::projection::Projection;
-use premio_visibility::contours;
 use premio_visibility::contours::{
     Contour, ContourKind, ContourPiece, Contours, ImageCurve, Junction,
 };
@@ -40,14 +40,6 @@ struct ViewData {
     projection: Projection,
 }
 
-/// Confirms by rays the view of a solid whose boundary f64 does not give.
-fn confirm(solid: &Solid, seen: &Contours) -> Result<()> {
-    match solid.contradiction(seen) {
-        Some(detail) => Err(Error::UncertainView { detail }),
-        None => Ok(()),
-    }
-}
-
 /// Shows the counts of its arcs and junctions.
 impl fmt::Debug for View {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -62,18 +54,9 @@ impl fmt::Debug for View {
 impl View {
     pub(crate) fn new(solid: &Solid, camera: &Camera) -> Result<Self> {
         let camera = camera.resolve(solid)?;
-        let known = solid.evaluation();
-        let contours = match known.view_resolution() {
-            Some(resolution) => contours(solid.brep(), &camera, resolution)?,
-            None => {
-                let seen = contours(solid.brep(), &camera, known.rounded_view_resolution())?;
-                confirm(solid, &seen)?;
-                seen
-            }
-        };
         Ok(Self(Arc::new(ViewData {
             solid: solid.clone(),
-            contours,
+            contours: confirmed_contours(solid, &camera)?,
             projection: Projection::new(&camera, 1.0),
         })))
     }

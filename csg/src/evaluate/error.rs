@@ -74,7 +74,7 @@ pub enum EvaluationError {
         place: [f64; 3],
     },
     /// The description's numbers are too large or too small for f64.
-    #[error("the part's size is beyond the range of lengths from 1e-100 to 1e100")]
+    #[error("the part's size is beyond the range of lengths from 1e-50 to 1e50")]
     Size,
     /// The part is too far from the origin for f64.
     #[error(

@@ -400,5 +400,5 @@ const COARSEST: f64 = 0.01;
 /// The greatest rounding of coordinates, relative to the part's size.
 const FARTHEST: f64 = 1.0 / (1 << 20) as f64;
 
-/// Beyond these lengths squares exceed the range of f64.
-const LARGEST: f64 = 1e100;
+/// The product of six lengths is within the range of f64, and so is its reciprocal.
+const LARGEST: f64 = 1e50;

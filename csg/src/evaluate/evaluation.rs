@@ -84,6 +84,14 @@ impl Evaluation {
         coincident.fold(0.0, f64::max)
     }
 
+    /// The same boundary with the measures of an evaluation in more bits.
+    pub(super) fn measured_by(self, fine: Evaluated<F106>) -> Self {
+        Self {
+            integrals: Self::from(fine).integrals,
+            ..self
+        }
+    }
+
     /// The volume, the area and the centroid.
     pub fn mass(&self) -> Mass {
         *self.mass.get_or_init(|| match &self.integrals {
@@ -151,19 +159,19 @@ impl From<Evaluated<f64>> for Evaluation {
 
 impl From<Evaluated<F106>> for Evaluation {
     fn from(known: Evaluated<F106>) -> Self {
-        known.widely(Integrals::DoubleDoubles)
+        known.into_evaluation(Integrals::DoubleDoubles)
     }
 }
 
 impl From<Evaluated<F237>> for Evaluation {
     fn from(known: Evaluated<F237>) -> Self {
-        known.widely(Integrals::Extended)
+        known.into_evaluation(Integrals::Extended)
     }
 }
 
 impl<N: Float> Evaluated<N> {
     /// The evaluation in more bits than those of f64.
-    fn widely(self, keep: impl Fn(Box<WideBoundary<N>>) -> Integrals) -> Evaluation {
+    fn into_evaluation(self, keep: impl Fn(Box<WideBoundary<N>>) -> Integrals) -> Evaluation {
         let mut decisions = self.decisions;
         // All of them took more bits than f64 has.
         decisions.refined += std::mem::take(&mut decisions.filtered);

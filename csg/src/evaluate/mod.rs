@@ -126,14 +126,14 @@ const FEW_IN_237_BITS: usize = 64;
 /// supported, or the computed boundary contradicts itself or the tree.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     match (options.zeros, options.digits) {
-        (CoincidencePolicy::Exact, Arithmetic::Filtered) => exactly(tree, options),
+        (CoincidencePolicy::Exact, Arithmetic::Filtered) => exact_evaluation(tree, options),
         (CoincidencePolicy::Exact, Arithmetic::Extended) => {
-            let known = finely::<F237>(tree, options)?;
-            Ok(seen(tree, options, known.into()))
+            let known = evaluated_at_finest::<F237>(tree, options)?;
+            Ok(with_view_resolution(tree, options, known.into()))
         }
         (CoincidencePolicy::ByResolution, Arithmetic::Extended) => {
-            let known = widely::<F237>(tree, options)?;
-            Ok(seen(tree, options, known.into()))
+            let known = evaluated_in_more_bits::<F237>(tree, options)?;
+            Ok(with_view_resolution(tree, options, known.into()))
         }
         (CoincidencePolicy::ByResolution, Arithmetic::Filtered) => by_resolution(tree, options),
     }
@@ -147,37 +147,58 @@ fn by_resolution(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation,
                 .decisions
                 .close_calls
                 .extend(vanished(tree, &known, options.noise));
-            return Ok(known.into());
+            let fine = finer_measures(tree, options, &known);
+            let known = Evaluation::from(known);
+            return Ok(match fine {
+                Some(fine) => known.measured_by(fine),
+                None => known,
+            });
         }
         Err(error) => error,
     };
-    let error = match is_worth(&error, tree, FEW_IN_106_BITS) {
-        true => match widely::<F106>(tree, options) {
+    let error = match is_worth_more_bits(&error, tree, FEW_IN_106_BITS) {
+        true => match evaluated_in_more_bits::<F106>(tree, options) {
             Ok(known) => return Ok(known.into()),
             Err(error) => error,
         },
         false => error,
     };
-    match is_worth(&error, tree, FEW_IN_237_BITS) {
-        true => widely::<F237>(tree, options).map(Evaluation::from),
+    match is_worth_more_bits(&error, tree, FEW_IN_237_BITS) {
+        true => evaluated_in_more_bits::<F237>(tree, options).map(Evaluation::from),
         false => Err(error),
     }
 }
 
+/// The same boundary in 106 bits, where f64 gives its measures to less than the default resolution.
+fn finer_measures(
+    tree: &Tree,
+    options: &EvaluationOptions,
+    known: &Evaluated<f64>,
+) -> Option<Evaluated<F106>> {
+    let is_asked = known.measures.precision().is_beyond(RELATIVE_RESOLUTION)
+        && tree.leaves().count() <= FEW_IN_106_BITS;
+    let fine = is_asked.then(|| evaluated::<F106>(tree, options).ok())??;
+    let census = known.brep.topology.census();
+    (fine.brep.topology.census() == census).then_some(fine)
+}
+
 /// Evaluates with the finest resolution, and proves every coincidence. More bits are needed where a
 /// proof fails, or where a point is not known well enough for one.
-fn exactly(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
-    let known = match finely::<F106>(tree, options) {
+fn exact_evaluation(
+    tree: &Tree,
+    options: &EvaluationOptions,
+) -> Result<Evaluation, EvaluationError> {
+    let known = match evaluated_at_finest::<F106>(tree, options) {
         Ok(known) if known.decisions.coincident == 0 => known.into(),
-        Ok(_) => finely::<F237>(tree, options)?.into(),
-        Err(error) if error.is_of_rounding() => finely::<F237>(tree, options)?.into(),
+        Ok(_) => evaluated_at_finest::<F237>(tree, options)?.into(),
+        Err(error) if error.is_of_rounding() => evaluated_at_finest::<F237>(tree, options)?.into(),
         Err(error) => return Err(error),
     };
-    Ok(seen(tree, options, known))
+    Ok(with_view_resolution(tree, options, known))
 }
 
 /// Whether more bits may succeed on a tree, and do so in reasonable time.
-fn is_worth(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
+fn is_worth_more_bits(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
     error.is_of_rounding() && tree.leaves().count() <= few
 }
 
@@ -186,14 +207,14 @@ fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<C
     let is_asked = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
         && tree.leaves().count() <= FEW_IN_106_BITS;
-    let mass = is_asked.then(|| finest_mass(tree).ok())??;
+    let mass = is_asked.then(|| fine_mass(tree).ok())??;
     let written = noise.unwrap_or(0.0) * known.bounds.diagonal();
     let noise = vanished::rounding(tree, &known.bounds).max(written);
     vanished::remainder(&mass, noise)
 }
 
 /// The mass properties with a resolution far below the precision of an f64.
-fn finest_mass(tree: &Tree) -> Result<Mass, EvaluationError> {
+fn fine_mass(tree: &Tree) -> Result<Mass, EvaluationError> {
     let size = HalfSpaceModel::<F106>::new(tree).bounds.diagonal();
     let options = EvaluationOptions {
         resolution: Some(BELOW_DOUBLES * f64::EPSILON * size),
@@ -209,19 +230,23 @@ const BELOW_DOUBLES: f64 = 1.0 / 16.0;
 
 /// Evaluates with the resolution, and if that contradicts itself, with the finest one, unless a
 /// resolution is requested.
-fn widely<N: Float>(
+fn evaluated_in_more_bits<N: Float>(
     tree: &Tree,
     options: &EvaluationOptions,
 ) -> Result<Evaluated<N>, EvaluationError> {
     match (evaluated::<N>(tree, options), options.resolution) {
-        (Err(error), None) => finely(tree, options).map_err(|_| error),
+        (Err(error), None) => evaluated_at_finest(tree, options).map_err(|_| error),
         (known, _) => known,
     }
 }
 
 /// The result of an evaluation in many bits. If f64 gives a boundary of the same kind, views can be
 /// computed in f64.
-fn seen(tree: &Tree, options: &EvaluationOptions, mut known: Evaluation) -> Evaluation {
+fn with_view_resolution(
+    tree: &Tree,
+    options: &EvaluationOptions,
+    mut known: Evaluation,
+) -> Evaluation {
     let by_resolution = EvaluationOptions {
         zeros: CoincidencePolicy::ByResolution,
         ..*options
@@ -234,7 +259,7 @@ fn seen(tree: &Tree, options: &EvaluationOptions, mut known: Evaluation) -> Eval
 }
 
 /// Evaluates with the finest resolution.
-fn finely<N: Float>(
+fn evaluated_at_finest<N: Float>(
     tree: &Tree,
     options: &EvaluationOptions,
 ) -> Result<Evaluated<N>, EvaluationError> {

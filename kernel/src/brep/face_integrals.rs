@@ -19,7 +19,7 @@ use crate::geometry::surface::Surface;
 use crate::geometry::vector::rounded;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
-use face::moments;
+use face::face_sum;
 use nalgebra::{Point3, Vector3};
 
 /// The mass properties of a body of density one.
@@ -45,6 +45,8 @@ pub struct FaceIntegrals<N: Float = f64> {
     shells: Vec<Amid<N>>,
     /// The moments of each face about the reference point of its shell.
     faces: Vec<Moments<N>>,
+    /// The largest defect of the closure of a face's boundary.
+    defect: N,
 }
 
 impl<N: Float> FaceIntegrals<N> {
@@ -60,11 +62,22 @@ impl<N: Float> FaceIntegrals<N> {
             .collect();
         let about = |face| &shells[brep.topology.face(face).shell.index()];
         let faces = brep.topology.face_ids();
+        let sums: Vec<_> = faces
+            .map(|face| face_sum(brep, face, about(face)))
+            .collect();
         Self {
             whole: Amid::new(brep, brep.topology.face_ids(), care),
-            faces: faces.map(|face| moments(brep, face, about(face))).collect(),
+            defect: sums.iter().fold(N::ZERO, |most, sum| most.max(sum.defect)),
+            faces: sums.into_iter().map(|sum| sum.moments).collect(),
             shells,
         }
+    }
+
+    /// The precision of the integrals that the boundary's edges allow, relative to the part's size.
+    /// Where surfaces nearly touch, the direction of an edge is known less accurately than its
+    /// points, and the integral of du around a face does not close by as much.
+    pub fn precision(&self) -> N {
+        self.defect
     }
 
     /// The mass properties of the solid that the boundary encloses.
@@ -148,7 +161,7 @@ impl<N: Float> FaceIntegrals<N> {
                 care: Care::Digits,
                 ..self.shells[shell]
             };
-            covered(face, &amid, moments(brep, face, &amid)[0])
+            covered(face, &amid, face_sum(brep, face, &amid).moments[0])
         };
         brep.topology.face_ids().map(of_face).collect()
     }
@@ -209,7 +222,7 @@ pub(crate) fn shell_volume<N: Float>(brep: &Brep<N>, faces: &[FaceId], size: N) 
         let amid = Amid::new(brep, faces.iter().copied(), care);
         let of = faces.iter().map(|&face| FaceMoments {
             face,
-            moments: moments(brep, face, &amid),
+            moments: face_sum(brep, face, &amid).moments,
         });
         enclosed(brep, faces, shell_moments(brep, of), &amid, size)
     };

@@ -9,6 +9,7 @@ use crate::geometry::surface::Surface;
 use crate::number::float::Float;
 use crate::number::quadrature::adaptive;
 use nalgebra::Point3;
+use std::cell::Cell;
 
 /// The data for integration over a face.
 pub(super) struct Density<'a, N: Float = f64> {
@@ -18,9 +19,21 @@ pub(super) struct Density<'a, N: Float = f64> {
     pub amid: &'a Amid<N>,
     /// The errors that may be ignored.
     pub floor: Moments<N>,
+    /// The largest defect of a loop's closure so far: ∮ du less a whole number of turns, relative to
+    /// the part's size on a plane.
+    pub defect: Cell<N>,
 }
 
 impl<N: Float> Density<'_, N> {
+    /// Notes ∮ du over a loop with this winding number.
+    pub fn note_closure(&self, way: N, turns: N) {
+        let defect = match &self.ground.surface {
+            Surface::Plane(_) => way / self.amid.size,
+            _ => way - N::TAU * turns,
+        };
+        self.defect.set(self.defect.get().max(defect.abs()));
+    }
+
     /// The v from which the integral along v starts for a loop. It is amid the loop's edges, so
     /// that what they have in common need not cancel.
     pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {

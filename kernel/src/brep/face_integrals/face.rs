@@ -16,11 +16,19 @@ use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
+/// The moments of a face, and the defect of its boundary's closure.
+pub(super) struct FaceSum<N: Float> {
+    pub moments: Moments<N>,
+    /// In radians, or relative to the part's size on a plane.
+    pub defect: N,
+}
+
 /// The moments of a face.
-pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> Moments<N> {
+pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -> FaceSum<N> {
     let coedges: Vec<CoedgeId> = brep.topology.coedges_of(face).collect();
     let surface = convenient(brep, brep.surface(face), &coedges, &amid.reference);
     let (base, middle) = match &surface {
@@ -39,8 +47,9 @@ pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) ->
         ground,
         amid,
         floor: amid.floor(brep, face),
+        defect: Cell::new(N::ZERO),
     };
-    match &surface {
+    let moments = match &surface {
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
             boundary_sum(brep, face, &d, &|_| Vec::new())
         }
@@ -52,6 +61,10 @@ pub(super) fn moments<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) ->
             with_far(sum, whole, holds)
         }
         Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
+    };
+    FaceSum {
+        moments,
+        defect: d.defect.get(),
     }
 }
 

@@ -103,6 +103,7 @@ fn loop_sum<N: Float>(
         Surface::Plane(_) => N::ZERO,
         _ => (way / N::TAU).round(),
     };
+    density.note_closure(way, turns);
     LoopSum {
         sum: [a, v, x, y, z],
         start,

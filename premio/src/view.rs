@@ -1,6 +1,6 @@
 //! The view of a solid from a camera.
 
-use crate::check::confirmed_contours;
+use crate::check::{ConfirmedContours, confirmed_contours};
 use crate::topology::{EdgeRef, FaceRef};
 use crate::write::{json_text, whole_file};
 use crate::{Camera, Error, Result, Solid};
@@ -54,9 +54,15 @@ impl fmt::Debug for View {
 impl View {
     pub(crate) fn new(solid: &Solid, camera: &Camera) -> Result<Self> {
         let camera = camera.resolve(solid)?;
+        let contours = match confirmed_contours(solid.tree(), solid.evaluation(), &camera)? {
+            ConfirmedContours::Confirmed(contours) => contours,
+            ConfirmedContours::Contradicted(detail) => {
+                return Err(Error::UncertainView { detail });
+            }
+        };
         Ok(Self(Arc::new(ViewData {
             solid: solid.clone(),
-            contours: confirmed_contours(solid, &camera)?,
+            contours,
             projection: Projection::new(&camera, 1.0),
         })))
     }

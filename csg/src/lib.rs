@@ -1,6 +1,7 @@
 //! Descriptions of solids: primitives, the tree of set operations, the readers, and the writers.
 pub mod builder;
 pub mod evaluate;
+pub mod figure;
 pub mod object_model;
 pub mod primitive;
 pub mod ray_casting;

@@ -1,9 +1,12 @@
 //! The primitive solids, each in its own frame.
 
 use std::fmt;
+use std::sync::Arc;
 
 use premio_kernel::motion::Motion;
-use premio_kernel::number::rational::Rational;
+use premio_kernel::number::rational::{Rational, to_f64};
+
+use crate::figure::{Figure, FigureEdge};
 
 /// A primitive solid. Lengths are exact; the constructors check them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,6 +50,66 @@ pub enum Primitive {
         /// The radius of the tube, less than `major`.
         minor: Rational,
     },
+    /// A figure of the xy plane extruded along +z.
+    Prism {
+        /// The figure at z = 0.
+        figure: Arc<Figure>,
+        /// The height.
+        height: Rational,
+        /// The factor by which the figure is scaled about the z axis at the height: 1 if the walls
+        /// are parallel to the axis, 0 at an apex.
+        top: Rational,
+    },
+    /// A figure revolved about z. Its first axis is the distance from z, its second one is z.
+    Revolution {
+        /// The figure in the half plane y = 0, x >= 0.
+        figure: Arc<Figure>,
+        /// The angle from the half plane y = 0, x >= 0; `None` for a whole turn.
+        angle: Option<RevolutionAngle>,
+    },
+}
+
+/// The angle of a revolution of less than a whole turn.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RevolutionAngle {
+    degrees: Rational,
+    /// The cosine and the sine, of a rational rotation.
+    direction: [Rational; 2],
+}
+
+impl RevolutionAngle {
+    /// An angle in degrees, between 0 and 360. Other angles than multiples of 90 are rounded such
+    /// that their cosine and sine are rational.
+    pub fn new(degrees: Rational) -> Option<Self> {
+        if degrees <= Rational::ZERO || degrees >= Rational::from(360) {
+            return None;
+        }
+        let axis = [Rational::ZERO, Rational::ZERO, Rational::ONE];
+        let turn = Motion::rotation(axis, &degrees).ok()?.rotation_matrix();
+        let [[cos, _, _], [sin, _, _], _] = turn;
+        let direction = [cos, sin];
+        Some(Self { degrees, direction })
+    }
+
+    /// The angle in degrees.
+    pub fn degrees(&self) -> &Rational {
+        &self.degrees
+    }
+
+    /// The direction of the half plane in which the revolution ends.
+    pub(crate) fn direction(&self) -> [Rational; 2] {
+        self.direction.clone()
+    }
+
+    /// Whether it is 180 degrees.
+    pub(crate) fn is_half_turn(&self) -> bool {
+        self.degrees == Rational::from(180)
+    }
+
+    /// Whether it is more than 180 degrees.
+    pub(crate) fn is_reflex(&self) -> bool {
+        self.degrees > Rational::from(180)
+    }
 }
 
 /// One of a primitive's lengths, to identify an invalid one.
@@ -104,6 +167,15 @@ pub enum PrimitiveError {
     /// The tube of a torus must be smaller than its spine circle.
     #[error("the minor radius must be less than the major radius")]
     NotARing,
+    /// A figure that is revolved must not cross the axis.
+    #[error("the figure must lie on one side of the axis")]
+    AcrossAxis,
+    /// A circle that crosses the axis makes a torus that intersects itself.
+    #[error("an arc about a point off the axis must have a circle that does not reach the axis")]
+    CircleAcrossAxis,
+    /// An arc that is scaled must be centred on the axis of the prism.
+    #[error("an arc of a scaled figure must be centred at the origin")]
+    ObliqueArc,
 }
 
 impl PrimitiveError {
@@ -112,7 +184,9 @@ impl PrimitiveError {
         match self {
             Self::NotPositive(dimension) | Self::Negative(dimension) => dimension,
             Self::NoRadius => Dimension::Top,
-            Self::NotARing => Dimension::Minor,
+            Self::NotARing | Self::CircleAcrossAxis => Dimension::Minor,
+            Self::AcrossAxis => Dimension::Major,
+            Self::ObliqueArc => Dimension::Top,
         }
     }
 }
@@ -205,9 +279,77 @@ impl Primitive {
         Ok(Self::Torus { major, minor })
     }
 
+    /// A figure extruded along z.
+    ///
+    /// # Errors
+    /// The height is not greater than zero.
+    pub fn prism(figure: Figure, height: Rational) -> Result<Self, PrimitiveError> {
+        Self::scaled_prism(figure, height, Rational::ONE)
+    }
+
+    /// A figure extruded along z and scaled about z by `top` on the way.
+    ///
+    /// # Errors
+    /// The height is not greater than zero, the factor is negative, or an arc that is scaled is not
+    /// centred at the origin.
+    pub fn scaled_prism(
+        figure: Figure,
+        height: Rational,
+        top: Rational,
+    ) -> Result<Self, PrimitiveError> {
+        positive(&height, Dimension::Height)?;
+        if top < Rational::ZERO {
+            return Err(PrimitiveError::Negative(Dimension::Top));
+        }
+        let is_oblique = |edge: &FigureEdge| {
+            let mut arc = edge.arc.iter();
+            arc.any(|arc| arc.centre.iter().any(|x| !x.is_zero()))
+        };
+        if !top.is_one() && figure.edges().iter().any(is_oblique) {
+            return Err(PrimitiveError::ObliqueArc);
+        }
+        let figure = Arc::new(figure);
+        Ok(Self::Prism {
+            figure,
+            height,
+            top,
+        })
+    }
+
+    /// A figure revolved about z, by an angle or a whole turn.
+    ///
+    /// # Errors
+    /// The figure reaches beyond the axis, or a circle of it does whose centre is not on the axis.
+    pub fn revolution(
+        figure: Figure,
+        angle: Option<RevolutionAngle>,
+    ) -> Result<Self, PrimitiveError> {
+        for edge in figure.edges() {
+            if edge.start[0] < Rational::ZERO || edge.end[0] < Rational::ZERO {
+                return Err(PrimitiveError::AcrossAxis);
+            }
+            let Some(arc) = &edge.arc else { continue };
+            let [lo, _] = edge.bounds();
+            if lo[0] < -(8.0 * f64::EPSILON * to_f64(&arc.radius)) {
+                return Err(PrimitiveError::AcrossAxis);
+            }
+            if !arc.centre[0].is_zero() && arc.centre[0] <= arc.radius {
+                return Err(PrimitiveError::CircleAcrossAxis);
+            }
+        }
+        let figure = Arc::new(figure);
+        Ok(Self::Revolution { figure, angle })
+    }
+
     /// Its lengths, in the order of its fields.
     pub(crate) fn lengths(&self) -> Vec<&Rational> {
         match self {
+            Self::Prism {
+                figure,
+                height,
+                top,
+            } => figure.lengths().chain([height, top]).collect(),
+            Self::Revolution { figure, .. } => figure.lengths().collect(),
             Self::Block { size } | Self::Wedge { size } => size.iter().collect(),
             Self::Cylinder { radius, height } => vec![radius, height],
             Self::Frustum { base, top, height } => vec![base, top, height],
@@ -240,24 +382,68 @@ impl Primitive {
                 major: by(major),
                 minor: by(minor),
             },
+            Self::Prism {
+                figure,
+                height,
+                top,
+            } => Self::Prism {
+                figure: Arc::new(figure.scaled(factor)),
+                height: by(height),
+                top: top.clone(),
+            },
+            Self::Revolution { figure, angle } => Self::Revolution {
+                figure: Arc::new(figure.scaled(factor)),
+                angle: angle.clone(),
+            },
         }
     }
 
-    /// The rigid motion that maps this primitive to its mirror image under `y -> -y`.
+    /// The mirror image under `y -> -y`: a primitive, and the rigid motion that places it.
     ///
-    /// Every primitive is symmetric about a plane of constant y, so its mirror image is a
-    /// translated copy.
-    pub(crate) fn mirror_y(&self) -> Motion {
-        match self {
+    /// Most primitives are symmetric about a plane of constant y, so their mirror images are
+    /// translated copies.
+    pub(crate) fn mirrored_y(&self) -> MirrorImage {
+        let motion = match self {
             Self::Block { size } | Self::Wedge { size } => {
                 Motion::translation([Rational::ZERO, -&size[1], Rational::ZERO])
+            }
+            // The image ends where the revolution starts.
+            Self::Revolution {
+                angle: Some(angle), ..
+            } => {
+                let axis = [Rational::ZERO, Rational::ZERO, Rational::ONE];
+                let turn = Motion::rotation(axis, &angle.degrees);
+                turn.map(|turn| turn.inverse()).unwrap_or_default()
             }
             Self::Cylinder { .. }
             | Self::Frustum { .. }
             | Self::Sphere { .. }
-            | Self::Torus { .. } => Motion::identity(),
-        }
+            | Self::Torus { .. }
+            | Self::Prism { .. }
+            | Self::Revolution { angle: None, .. } => Motion::identity(),
+        };
+        let primitive = match self {
+            Self::Prism {
+                figure,
+                height,
+                top,
+            } => Self::Prism {
+                figure: Arc::new(figure.mirrored_y()),
+                height: height.clone(),
+                top: top.clone(),
+            },
+            other => other.clone(),
+        };
+        MirrorImage { primitive, motion }
     }
+}
+
+/// The mirror image of a primitive.
+pub(crate) struct MirrorImage {
+    /// The primitive.
+    pub primitive: Primitive,
+    /// Its placement.
+    pub motion: Motion,
 }
 
 fn positive(value: &Rational, dimension: Dimension) -> Result<(), PrimitiveError> {

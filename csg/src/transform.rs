@@ -172,14 +172,6 @@ impl Transform {
         self
     }
 
-    /// The mirror image of these steps under `y -> -y`.
-    pub(crate) fn mirrored_y(&self) -> Self {
-        Self {
-            steps: self.steps.iter().map(TransformStep::mirrored_y).collect(),
-            motion: self.motion.mirrored_y(),
-        }
-    }
-
     /// The composition of the steps.
     pub(crate) fn motion(&self) -> &Motion {
         &self.motion

@@ -73,10 +73,11 @@ impl<'a> Expansion<'a> {
             Some(factor) => primitive.scaled(factor),
             None => primitive.clone(),
         };
-        let motion = if *mirrored {
-            primitive.mirror_y().then(motion)
+        let (primitive, motion) = if *mirrored {
+            let image = primitive.mirrored_y();
+            (image.primitive, image.motion.then(motion))
         } else {
-            motion.clone()
+            (primitive, motion.clone())
         };
         self.attach(
             TreeNode::Leaf(PlacedPrimitive { primitive, motion }),

@@ -123,7 +123,9 @@ impl<N: Float> Arrangement<N> {
         let mut known = HashSet::new();
         let is_new = |i: &usize| {
             let Aabb { min, max } = solids.all[*i].bounds;
-            known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
+            // The walls of sections may end differently on the same carriers.
+            solids.all[*i].section.is_some()
+                || known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
         };
         let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();
         let tree = tree_of(solids, distinct.iter().copied(), reach);
@@ -155,7 +157,8 @@ impl<N: Float> Arrangement<N> {
         let (s, o) = (&solids.all[i], &solids.all[j]);
         for (k, a) in s.sides.iter().enumerate() {
             let box_a = a.bounds.grown(reach);
-            for (l, b) in o.sides.iter().enumerate() {
+            for l in o.sides_near(&box_a.grown(reach)) {
+                let b = &o.sides[l];
                 let (c, d) = (self.sides[i][k].carrier, self.sides[j][l].carrier);
                 if c == d || (i == j && k >= l) {
                     continue;

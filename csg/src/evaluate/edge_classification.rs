@@ -10,15 +10,16 @@
 //! × d the counterclockwise direction, n the carrier's normal.
 
 use super::arrangement::Arrangement;
+use super::distinct_surfaces::CarrierSide;
 use super::edge_candidates::EdgeCandidate;
 use super::error::EvaluationError;
-use super::halfspaces::HalfSpaceModel;
+use super::halfspaces::{EndRule, HalfSpaceModel};
 use super::membership::Membership;
-use super::radial_order::Spot;
+use super::radial_order::{HalfSheet, Spot};
 use super::relevance::CloseCallFilter;
 use super::vertices::VertexCandidate;
 use crate::tree::NodeId;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::boundary_input::{
     BoundaryInput, EdgeInput, FaceUse, SurfaceSide, VertexInput,
 };
@@ -31,10 +32,50 @@ use premio_kernel::number::predicates::{Compare, Predicates};
 use std::collections::HashMap;
 
 /// A primitive close to a piece, with the conditions under which it contains a sector.
-struct Near {
+struct Near<N: Float = f64> {
     leaf: NodeId,
     /// The carriers of the piece whose side is still open.
     open: Vec<OpenSide>,
+    /// Whether one of these sides suffices.
+    rule: EndRule,
+    /// The walls through the piece that bound the primitive's section there.
+    walls: Vec<OpenWall<N>>,
+}
+
+impl<N: Float> Near<N> {
+    /// Whether a carrier of the piece bounds it.
+    fn has_face(&self, carrier: usize) -> bool {
+        self.open.iter().any(|o| o.carrier == carrier)
+            || self.walls.iter().any(|w| w.carrier == carrier)
+    }
+
+    /// Whether its half spaces contain a sector, by the sides of the carriers.
+    fn is_between_ends(&self, side_of: impl Fn(usize) -> Sense) -> bool {
+        let mut open = self.open.iter().map(|o| side_of(o.carrier) == o.side);
+        match self.rule {
+            EndRule::All => open.all(|within| within),
+            EndRule::Any => self.open.is_empty() || open.any(|within| within),
+        }
+    }
+}
+
+/// A wall of a primitive through a piece.
+#[derive(Clone, Copy)]
+struct OpenWall<N: Float = f64> {
+    /// The index of the carrier in the piece.
+    carrier: usize,
+    /// The side of the carrier on which there is material.
+    side: Sense,
+    /// The direction in which the wall extends from the piece; `None` if it does on both sides.
+    away: Option<Vector3<N>>,
+}
+
+impl<N: Float> OpenWall<N> {
+    /// Whether a half sheet is part of the wall.
+    fn has(&self, sheet: &HalfSheet<N>) -> bool {
+        let extends = |away: &Vector3<N>| away.dot(&sheet.direction).is_above_zero();
+        self.carrier == sheet.carrier && self.away.as_ref().is_none_or(extends)
+    }
 }
 
 /// A carrier through a piece, and the side of it on which a primitive lies.
@@ -55,7 +96,7 @@ struct ClassifiedEdge<N: Float = f64> {
 /// The neighbourhood of a point of a piece.
 struct NeighbourhoodSample<N: Float = f64> {
     /// The primitives that contain it, by leaf.
-    near: Vec<Near>,
+    near: Vec<Near<N>>,
     /// The smallest distance of a surface that could change the result.
     margin: N,
 }
@@ -63,13 +104,22 @@ struct NeighbourhoodSample<N: Float = f64> {
 impl<N: Float> NeighbourhoodSample<N> {
     /// Whether any surface through the point belongs to a primitive that is present there.
     fn may_have_faces(&self) -> bool {
-        self.near.iter().any(|n| !n.open.is_empty())
+        let mut near = self.near.iter();
+        near.any(|n| !n.open.is_empty() || !n.walls.is_empty())
     }
 
     /// Whether its margin is larger.
     fn is_clearer_than(&self, other: &Self) -> bool {
         self.margin.is_beyond(other.margin)
     }
+}
+
+/// One primitive in the neighbourhood of a point.
+struct SolidLook<N: Float = f64> {
+    /// The primitive, if it may contain points there.
+    near: Option<Near<N>>,
+    /// The smallest distance of a surface that could change that.
+    margin: N,
 }
 
 struct Classifier<'a, N: Float = f64> {
@@ -82,6 +132,10 @@ struct Classifier<'a, N: Float = f64> {
 /// The fractions of a piece's range at which it is sampled. The later ones are used if a surface
 /// passes through the first.
 const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
+
+/// The distance from a wall up to which a curve on its carrier is on it, in multiples of the
+/// resolution.
+const WALL_TOLERANCE: f64 = 16.0;
 
 pub(super) fn boundary<N: Float>(
     concern: &CloseCallFilter<'_, N>,
@@ -179,39 +233,82 @@ impl<N: Float> Classifier<'_, N> {
         let mut near = Vec::new();
         let mut margin = N::INFINITY;
         for s in self.arrangement.tree.locate_all_at_point(rounded(p)) {
-            let solid = &self.solids.all[s.data];
-            let mut open = Vec::new();
-            // The least distance from all other sides, and the greatest signed distance outside
-            // one.
-            let (mut inside, mut outside) = (N::INFINITY, N::NEG_INFINITY);
-            for (side, own) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
-                if let Ok(carrier) = carriers.binary_search(&own.carrier) {
-                    let side = own.sense;
-                    open.push(OpenSide { carrier, side });
-                    continue;
-                }
-                let distance = side.surface.distance(p);
-                inside = inside.min(distance.abs());
-                outside = outside.max(distance);
-            }
-            if outside.reaches(N::ZERO) {
-                margin = margin.min(outside);
-            } else {
-                margin = margin.min(inside);
-                near.push(Near {
-                    leaf: solid.leaf,
-                    open,
-                });
-            }
+            let found = self.look_at(s.data, p, carriers);
+            margin = margin.min(found.margin);
+            near.extend(found.near);
         }
         near.sort_by_key(|n| n.leaf);
         NeighbourhoodSample { near, margin }
     }
 
-    fn wings_at(&self, spot: &Spot<'_, N>, near: &[Near]) -> Result<Vec<FaceUse>, EvaluationError> {
+    /// One primitive close to `p`.
+    fn look_at(&self, index: usize, p: &Point3<N>, carriers: &[usize]) -> SolidLook<N> {
+        let (solid, sides) = (&self.solids.all[index], &self.arrangement.sides[index]);
+        let mut near = Near {
+            leaf: solid.leaf,
+            open: Vec::new(),
+            rule: solid.ends,
+            walls: Vec::new(),
+        };
+        // The least distance from all other sides, and the greatest and the least signed distance.
+        let (mut inside, mut greatest, mut least) = (N::INFINITY, N::NEG_INFINITY, N::INFINITY);
+        for (k, side) in solid.half_spaces() {
+            if let Ok(carrier) = carriers.binary_search(&sides[k].carrier) {
+                let side = sides[k].sense;
+                near.open.push(OpenSide { carrier, side });
+                continue;
+            }
+            let distance = side.surface.distance(p);
+            inside = inside.min(distance.abs());
+            greatest = greatest.max(distance);
+            least = least.min(distance);
+        }
+        let is_outside = match solid.ends {
+            EndRule::All => greatest.reaches(N::ZERO),
+            EndRule::Any => near.open.is_empty() && least.reaches(N::ZERO),
+        };
+        if solid.ends == EndRule::Any && least.is_below_zero() {
+            near.open.clear();
+        }
+        if is_outside {
+            let margin = match solid.ends {
+                EndRule::All => greatest,
+                EndRule::Any => least,
+            };
+            return SolidLook { near: None, margin };
+        }
+        let Some(section) = &solid.section else {
+            let (near, margin) = (Some(near), inside);
+            return SolidLook { near, margin };
+        };
+        let is_own = |side: usize| carriers.binary_search(&sides[side].carrier).is_ok();
+        let tolerance = N::from_f64(WALL_TOLERANCE) * self.predicates.resolution::<N>();
+        let look = section.look(p, is_own, tolerance);
+        near.walls.extend(look.walls.iter().filter_map(|wall| {
+            let CarrierSide { carrier, sense } = sides[wall.side];
+            Some(OpenWall {
+                carrier: carriers.binary_search(&carrier).ok()?,
+                side: match wall.is_concave {
+                    true => sense.reversed(),
+                    false => sense,
+                },
+                away: wall.away,
+            })
+        }));
+        let is_near = look.is_inside || !near.walls.is_empty();
+        SolidLook {
+            near: is_near.then_some(near),
+            margin: inside.min(look.margin),
+        }
+    }
+
+    fn wings_at(
+        &self,
+        spot: &Spot<'_, N>,
+        near: &[Near<N>],
+    ) -> Result<Vec<FaceUse>, EvaluationError> {
         let piece = spot.piece;
-        let has_face = |at: usize| near.iter().any(|n| n.open.iter().any(|o| o.carrier == at));
-        let sheets = spot.sheets(has_face)?;
+        let sheets = spot.sheets(|at| near.iter().any(|n| n.has_face(at)))?;
         let n = sheets.len();
         // The sides before the first sheet: opposite to those beyond the first sheet of each
         // carrier.
@@ -219,19 +316,33 @@ impl<N: Float> Classifier<'_, N> {
         for s in sheets.iter().rev() {
             sides[s.carrier] = s.beyond.reversed();
         }
-        let inside = |sides: &[Sense]| {
+        // Whether each section contains the sector: the last sheet before it that is part of one of
+        // its walls determines that.
+        let within_after = |near: &Near<N>, sheet: &HalfSheet<N>| {
+            let wall = near.walls.iter().find(|wall| wall.has(sheet))?;
+            Some(sheet.beyond == wall.side)
+        };
+        let last = |near: &Near<N>| sheets.iter().rev().find_map(|s| within_after(near, s));
+        let mut within: Vec<bool> = near.iter().map(|n| last(n).unwrap_or(true)).collect();
+        let inside = |sides: &[Sense], within: &[bool]| {
             let held: Vec<NodeId> = near
                 .iter()
-                .filter(|s| s.open.iter().all(|o| sides[o.carrier] == o.side))
-                .map(|s| s.leaf)
+                .zip(within)
+                .filter(|(s, within)| **within && s.is_between_ends(|carrier| sides[carrier]))
+                .map(|(s, _)| s.leaf)
                 .collect();
             !held.is_empty() && self.membership.contains(&held)
         };
-        let mut before = inside(&sides);
+        let mut before = inside(&sides, &within);
         let mut changes: Vec<MaterialChange> = Vec::new();
         for (sheet, s) in sheets.iter().enumerate() {
             sides[s.carrier] = s.beyond;
-            let after = inside(&sides);
+            for (within, near) in within.iter_mut().zip(near) {
+                if !near.walls.is_empty() {
+                    *within = within_after(near, s).unwrap_or(*within);
+                }
+            }
+            let after = inside(&sides, &within);
             if after != before {
                 changes.push(MaterialChange { sheet, after });
             }
@@ -337,7 +448,10 @@ impl<N: Float> Classifier<'_, N> {
         }
         let held = |side: Sense| {
             let near = look.near.iter();
-            let within = near.filter(|s| s.open.iter().all(|o| o.side == side));
+            let is_within = |s: &&Near<N>| {
+                s.walls.iter().all(|wall| wall.side == side) && s.is_between_ends(|_| side)
+            };
+            let within = near.filter(is_within);
             let held: Vec<NodeId> = within.map(|s| s.leaf).collect();
             !held.is_empty() && self.membership.contains(&held)
         };

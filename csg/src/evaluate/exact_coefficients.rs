@@ -1,5 +1,6 @@
 //! The exact coefficients of half spaces: rational numbers in a rational frame.
 
+use super::walls;
 use crate::primitive::Primitive;
 use crate::tree::PlacedPrimitive;
 use premio_kernel::geometry::surface_pair::Coefficients;
@@ -44,6 +45,22 @@ fn in_own_frame(primitive: &Primitive, side: usize) -> Coefficients<Rational> {
         Primitive::Torus { major, minor } => Coefficients {
             tube: minor.clone(),
             ..about_z(major)
+        },
+        Primitive::Prism { height, .. } => match walls::wall(primitive, side) {
+            Some(wall) => wall.coefficients,
+            None if side == walls::count(primitive) => disc(&Rational::ZERO, false),
+            None => disc(height, true),
+        },
+        Primitive::Revolution { .. } => match walls::wall(primitive, side) {
+            Some(wall) => wall.coefficients,
+            None => {
+                let end = side - walls::count(primitive);
+                let normal = walls::end_normals(primitive).into_iter().nth(end);
+                Coefficients {
+                    direction: normal.unwrap_or_default(),
+                    ..plane()
+                }
+            }
         },
     }
 }

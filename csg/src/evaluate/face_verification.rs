@@ -5,6 +5,7 @@
 //! solid. At a point inside a face, away from all intersections, the tree must have material just
 //! below and none just above.
 
+use super::halfspaces::EndRule;
 use super::relevance::CloseCallFilter;
 use crate::tree::NodeId;
 use nalgebra::{Point3, Vector3};
@@ -71,17 +72,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
             .tree
             .locate_all_at_point(rounded(&at.point));
         for s in near {
+            let inside = self.insides(s.data, at)?;
             let solid = &self.solids.all[s.data];
-            let mut inside = [true; 2];
-            for (side, own) in solid.sides.iter().zip(&self.arrangement.sides[s.data]) {
-                let is_own = self.arrangement.carriers[own.carrier] == *at.surface;
-                match self.adjacency(&side.surface, is_own, at) {
-                    Adjacency::Clear(holds) => {
-                        inside = [inside[0] && holds[0], inside[1] && holds[1]];
-                    }
-                    Adjacency::Unclear => return None,
-                }
-            }
             for (held, inside) in held.iter_mut().zip(inside) {
                 if inside {
                     held.push(solid.leaf);
@@ -92,6 +84,37 @@ impl<N: Float> CloseCallFilter<'_, N> {
             leaves.sort_unstable();
             !leaves.is_empty() && self.membership.contains(&leaves)
         }))
+    }
+
+    /// Whether a primitive contains the points below and above a face; `None` if that is unclear.
+    fn insides(&self, index: usize, at: &FaceVerifier<'_, N>) -> Option<[bool; 2]> {
+        let (solid, sides) = (&self.solids.all[index], &self.arrangement.sides[index]);
+        let is_own = |side: usize| {
+            let carrier = sides[side].carrier;
+            self.arrangement.carriers[carrier] == *at.surface
+        };
+        let mut ends = Vec::new();
+        for (k, side) in solid.half_spaces() {
+            match self.adjacency(&side.surface, is_own(k), at) {
+                Adjacency::Clear(holds) => ends.push(holds),
+                Adjacency::Unclear => return None,
+            }
+        }
+        let within = [0, 1].map(|i| match solid.ends {
+            EndRule::All => ends.iter().all(|holds| holds[i]),
+            EndRule::Any => ends.iter().any(|holds| holds[i]),
+        });
+        let Some(section) = &solid.section else {
+            return Some(within);
+        };
+        let step = N::from_f64(STEP) * self.predicates.resolution::<N>();
+        let look = section.look(&at.point, is_own, N::HALF * step);
+        if look.margin.is_at_most(N::TWO * step) || look.walls.iter().any(|w| w.away.is_some()) {
+            return None;
+        }
+        let places = [-step, step].map(|away| at.point + at.normal * away);
+        let inside = places.map(|p| section.contains(&p));
+        Some([0, 1].map(|i| within[i] && inside[i]))
     }
 
     fn adjacency(&self, surface: &Surface<N>, is_own: bool, at: &FaceVerifier<'_, N>) -> Adjacency {

@@ -1,5 +1,8 @@
-//! Represents every primitive as an intersection of half spaces.
+//! Represents every primitive as an intersection of half spaces, or as walls around a section and
+//! the half spaces of its ends.
 
+use super::section::{Section, SectionMap};
+use super::walls::{self, Wall, WallKind};
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, PlacedPrimitive, Tree};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -10,6 +13,8 @@ use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 use premio_kernel::number::rational::Rational;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 
 /// A half space: one side of a surface, and the bounding box of the primitive's face on it.
 #[derive(Clone, Debug)]
@@ -25,10 +30,73 @@ pub(super) struct HalfSpace<N: Float> {
 pub(super) struct Solid<N: Float> {
     /// Its leaf in the tree.
     pub leaf: NodeId,
-    /// Its half spaces.
+    /// Its walls, and then its half spaces.
     pub sides: Vec<HalfSpace<N>>,
+    /// The section that the walls bound, of a prism or a revolution.
+    pub section: Option<Section<N>>,
+    /// How the half spaces are combined.
+    pub ends: EndRule,
     /// Its bounding box.
     pub bounds: Aabb,
+    /// The boxes of its sides, if there are many.
+    index: Option<SideTree>,
+}
+
+/// A tree of the boxes of a primitive's sides.
+type SideTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
+
+/// The number of sides from which a tree of their boxes is worth its cost.
+const MANY_SIDES: usize = 32;
+
+/// The tree of many sides.
+fn index<N: Float>(sides: &[HalfSpace<N>]) -> Option<SideTree> {
+    let boxes = sides.iter().enumerate().map(|(k, side)| {
+        let Aabb { min, max } = side.bounds;
+        GeomWithData::new(Rectangle::from_corners(min, max), k)
+    });
+    (sides.len() >= MANY_SIDES).then(|| RTree::bulk_load(boxes.collect()))
+}
+
+/// How the half spaces of a primitive are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum EndRule {
+    /// A point is in all of them.
+    All,
+    /// A point is in at least one: a revolution by more than half a turn.
+    Any,
+}
+
+impl<N: Float> Solid<N> {
+    /// The sides whose boxes may intersect a box, in increasing order.
+    pub fn sides_near(&self, around: &Aabb) -> Vec<usize> {
+        let Some(index) = &self.index else {
+            return (0..self.sides.len()).collect();
+        };
+        let around = AABB::from_corners(around.min, around.max);
+        let near = index.locate_in_envelope_intersecting(around);
+        let mut near: Vec<usize> = near.map(|side| side.data).collect();
+        near.sort_unstable();
+        near
+    }
+
+    /// The half spaces that are not walls, with their indices among the sides.
+    pub fn half_spaces(&self) -> impl Iterator<Item = (usize, &HalfSpace<N>)> + Clone {
+        let walls = self.section.as_ref().map_or(0, |section| section.walls);
+        self.sides.iter().enumerate().skip(walls)
+    }
+
+    /// The signed distance of a point, up to a limit beyond which it has the right sign only.
+    pub fn level(&self, p: &Point3<N>, limit: N) -> N {
+        let ends = self.half_spaces().map(|(_, side)| side.surface.distance(p));
+        let ends = match self.ends {
+            EndRule::All => ends.fold(N::NEG_INFINITY, N::max),
+            EndRule::Any => ends.fold(N::INFINITY, N::min),
+        };
+        match &self.section {
+            Some(section) => ends.max(section.level(p, limit)),
+            None => ends,
+        }
+    }
 }
 
 /// All primitives of a tree.
@@ -72,6 +140,48 @@ impl<N: Float> Pose<'_, N> {
         Surface::Plane(Plane {
             frame: Frame::about(origin, self.turn * normal),
         })
+    }
+
+    /// The surface of a wall.
+    fn wall(&self, wall: &Wall) -> Surface<N> {
+        let exact = &wall.coefficients;
+        let (size, tube) = (N::nearest(&exact.size), N::nearest(&exact.tube));
+        let direction = Vector3::from(exact.direction.each_ref().map(N::nearest));
+        if wall.kind == WallKind::Plane {
+            return self.plane(exact.point.clone(), direction.unit());
+        }
+        let frame = self.frame(exact.point.clone());
+        match wall.kind {
+            WallKind::Plane | WallKind::Cylinder => Surface::Cylinder(Cylinder {
+                frame,
+                radius: size,
+            }),
+            WallKind::Cone => {
+                let frame = match direction.z.is_above_zero() {
+                    true => frame,
+                    false => Frame {
+                        y: -frame.y,
+                        z: -frame.z,
+                        ..frame
+                    },
+                };
+                let length = size.hypot(N::ONE);
+                Surface::Cone(Cone {
+                    frame,
+                    sin: size / length,
+                    cos: N::ONE / length,
+                })
+            }
+            WallKind::Sphere => Surface::Sphere(Sphere {
+                frame,
+                radius: size,
+            }),
+            WallKind::Torus => Surface::Torus(Torus {
+                frame,
+                major: size,
+                minor: tube,
+            }),
+        }
     }
 
     /// The enclosing box of a box in the primitive's frame, to rounding.
@@ -174,6 +284,9 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
             let w = N::nearest(&(major + minor));
             add(Surface::Torus(t), [-w, -w, -b], [w, w, b]);
         }
+        Primitive::Prism { .. } | Primitive::Revolution { .. } => {
+            return sectioned(leaf, &pose);
+        }
     }
     let bounds = match &placed.primitive {
         // The wall of a cone has the box of the whole primitive.
@@ -185,6 +298,97 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
     Solid {
         leaf,
         sides,
+        section: None,
+        ends: EndRule::All,
+        bounds,
+        index: None,
+    }
+}
+
+/// A prism or a revolution.
+fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
+    let primitive = &pose.placed.primitive;
+    let walls = walls::walls(primitive);
+    let (figure, map, heights) = match primitive {
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => {
+            let growth = N::nearest(&((top - Rational::ONE) / height));
+            (figure, SectionMap::Prism { growth }, Some([height, top]))
+        }
+        Primitive::Revolution { figure, .. } => (figure, SectionMap::Revolution, None),
+        _ => {
+            return Solid {
+                leaf,
+                sides: Vec::new(),
+                section: None,
+                ends: EndRule::All,
+                bounds: Aabb::EMPTY,
+                index: None,
+            };
+        }
+    };
+    let section = Section::new(figure, &walls, map, pose.turn, pose.point(zero()));
+    let swept = |[lo, hi]: [[N; 2]; 2]| match heights {
+        Some([height, top]) => {
+            let k = N::nearest(top);
+            let low: [N; 2] = std::array::from_fn(|i| lo[i].min(lo[i] * k));
+            let high: [N; 2] = std::array::from_fn(|i| hi[i].max(hi[i] * k));
+            pose.boxed(
+                [low[0], low[1], N::ZERO],
+                [high[0], high[1], N::nearest(height)],
+            )
+        }
+        None => pose.boxed([-hi[0], -hi[0], lo[1]], [hi[0], hi[0], hi[1]]),
+    };
+    let mut sides: Vec<HalfSpace<N>> = Vec::with_capacity(walls.len() + 2);
+    sides.extend(walls.iter().map(|wall| HalfSpace {
+        surface: pose.wall(wall),
+        bounds: swept(section.edges[wall.edge].bounds()),
+    }));
+    let whole = section.bounds();
+    let bounds = swept(whole);
+    let mut ends = EndRule::All;
+    match primitive {
+        Primitive::Prism { height, top, .. } => {
+            let [[x, y], [x2, y2]] = whole;
+            let at = |z: &Rational, k: N, up: N| HalfSpace {
+                surface: pose.plane(
+                    [Rational::ZERO, Rational::ZERO, z.clone()],
+                    Vector3::z() * up,
+                ),
+                bounds: pose.boxed(
+                    [x * k, y * k, N::nearest(z)],
+                    [x2 * k, y2 * k, N::nearest(z)],
+                ),
+            };
+            sides.push(at(&Rational::ZERO, N::ONE, -N::ONE));
+            if !top.is_zero() {
+                sides.push(at(height, N::nearest(top), N::ONE));
+            }
+        }
+        Primitive::Revolution { angle, .. } => {
+            if angle.as_ref().is_some_and(|angle| angle.is_reflex()) {
+                ends = EndRule::Any;
+            }
+            sides.extend(walls::end_normals(primitive).iter().map(|normal| {
+                let normal = Vector3::from(normal.each_ref().map(N::nearest));
+                HalfSpace {
+                    surface: pose.plane(zero(), normal.unit()),
+                    bounds,
+                }
+            }));
+        }
+        _ => {}
+    }
+    Solid {
+        leaf,
+        index: index(&sides),
+        sides,
+        section: Some(section),
+        ends,
         bounds,
     }
 }

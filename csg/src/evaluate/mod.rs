@@ -6,7 +6,9 @@
 //! | --- | --- |
 //! | `near_cylinders` | refuses frustums that are nearly cylinders |
 //! | `vanished` | drops primitives thinner than the resolution |
-//! | `halfspaces` | every primitive as half-spaces |
+//! | `walls` | the surfaces that the edges of a figure sweep |
+//! | `section` | which walls of a prism or revolution pass through a point, and where they end |
+//! | `halfspaces` | every primitive as half-spaces, or as walls between half-spaces |
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
@@ -42,10 +44,12 @@ mod membership;
 mod near_cylinders;
 mod radial_order;
 mod relevance;
+mod section;
 mod split_curves;
 mod tangent_contacts;
 mod vanished;
 mod vertices;
+mod walls;
 
 pub use error::EvaluationError;
 pub use evaluation::Evaluation;

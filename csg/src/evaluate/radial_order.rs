@@ -23,7 +23,7 @@ pub(super) struct HalfSheet<N: Float = f64> {
     /// The carrier, by its index among the piece's carriers.
     pub carrier: usize,
     /// The direction away from the piece.
-    direction: Vector3<N>,
+    pub direction: Vector3<N>,
     /// Its angle about the tangent.
     angle: N,
     /// The rate at which it turns counterclockwise with the distance.

@@ -11,6 +11,7 @@ use super::halfspaces::{HalfSpace, HalfSpaceModel};
 use super::membership::Membership;
 use super::vertices::VertexCandidate;
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
@@ -43,7 +44,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
         let place = rounded(&corner.point);
         let mut passing: Vec<(usize, N)> = Vec::new();
         for s in self.arrangement.tree.locate_all_at_point(place) {
-            for (side, own) in self.sides(s.data) {
+            for (side, own) in self.sides_at(s.data, &corner.point) {
                 let distance = side.surface.distance(&corner.point);
                 if self.predicates.is_close(distance) && !corner.is_on(own.carrier) {
                     passing.push((own.carrier, distance));
@@ -64,10 +65,19 @@ impl<N: Float> CloseCallFilter<'_, N> {
         }
     }
 
-    /// The sides of a solid, each with its carrier.
-    fn sides(&self, solid: usize) -> impl Iterator<Item = (&HalfSpace<N>, &CarrierSide)> + Clone {
-        let sides = self.solids.all[solid].sides.iter();
-        sides.zip(&self.arrangement.sides[solid])
+    /// The sides of a solid that may be close to a point, each with its carrier.
+    fn sides_at(
+        &self,
+        solid: usize,
+        p: &Point3<N>,
+    ) -> impl Iterator<Item = (&HalfSpace<N>, &CarrierSide)> {
+        let margin = N::TWO * self.predicates.reach::<N>();
+        let around = Aabb::new(p).grown(margin);
+        let near = self.solids.all[solid].sides_near(&around).into_iter();
+        near.map(move |k| {
+            let own = &self.arrangement.sides[solid][k];
+            (&self.solids.all[solid].sides[k], own)
+        })
     }
 
     fn concerns(&self, place: [f64; 3], between: &Between) -> bool {
@@ -105,8 +115,8 @@ impl<N: Float> CloseCallFilter<'_, N> {
             let away = |(side, own): (&HalfSpace<N>, &CarrierSide)| {
                 (side.surface.distance(&p), own.carrier)
             };
-            let sides = self.sides(s.data).map(away);
-            let outside = sides.clone().fold(N::NEG_INFINITY, |most, s| most.max(s.0));
+            let sides = self.sides_at(s.data, &p).map(away);
+            let outside = solid.level(&p, N::TWO * margin);
             match Side::new(outside, margin) {
                 Side::Inside => held.push(solid.leaf),
                 Side::On => {

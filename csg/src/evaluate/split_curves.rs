@@ -51,9 +51,10 @@ impl<N: Float> Arrangement<N> {
         let around = AABB::from_corners(m.bounds.min, m.bounds.max);
         let mut near: Vec<CarrierFace> = Vec::new();
         for s in self.tree.locate_in_envelope_intersecting(around) {
-            for (k, side) in solids.all[s.data].sides.iter().enumerate() {
+            let solid = &solids.all[s.data];
+            for k in solid.sides_near(&m.bounds.grown(predicates.reach::<N>())) {
                 let carrier = self.sides[s.data][k].carrier;
-                let bounds = side.bounds.grown(predicates.reach::<N>());
+                let bounds = solid.sides[k].bounds.grown(predicates.reach::<N>());
                 if !m.carriers.contains(&carrier) && common(&bounds, &m.bounds).is_some() {
                     near.push(CarrierFace { carrier, bounds });
                 }

@@ -68,6 +68,8 @@ fn thickness(primitive: &Primitive) -> f64 {
         }
         Primitive::Sphere { radius } => 2.0 * to_f64(radius),
         Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
+        Primitive::Prism { height, .. } => to_f64(height),
+        Primitive::Revolution { .. } => f64::INFINITY,
     }
 }
 
@@ -84,7 +86,10 @@ fn middle(placed: &PlacedPrimitive) -> [f64; 3] {
         Primitive::Cylinder { height, .. } | Primitive::Frustum { height, .. } => {
             [nothing(), nothing(), half(height)]
         }
-        Primitive::Sphere { .. } | Primitive::Torus { .. } => [nothing(), nothing(), nothing()],
+        Primitive::Prism { height, .. } => [nothing(), nothing(), half(height)],
+        Primitive::Sphere { .. } | Primitive::Torus { .. } | Primitive::Revolution { .. } => {
+            [nothing(), nothing(), nothing()]
+        }
     };
     placed.motion.apply_point(&point).each_ref().map(to_f64)
 }

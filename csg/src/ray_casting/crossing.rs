@@ -3,6 +3,7 @@
 //! The surfaces are those of the primitives. Coincident surfaces of several primitives are merged,
 //! so that neighbouring lines that cross the same face of the part cross the same surface.
 
+use super::section::{Edge, SectionShape, Sweep};
 use super::shape::Shape;
 use super::{Event, Leaf, Ray, RayOracle};
 use nalgebra::Vector3;
@@ -103,6 +104,21 @@ impl Carrier {
         }
     }
 
+    /// The distance of a point from it.
+    fn distance(&self, p: &Vector3<f64>) -> f64 {
+        let away = p - self.point;
+        let along = away.dot(&self.axis);
+        let radius = (away - self.axis * along).norm();
+        let [a, b] = self.sizes;
+        match self.kind {
+            Kind::Plane => along.abs(),
+            Kind::Cylinder => (radius - a).abs(),
+            Kind::Cone => (radius - a * along.abs()).abs() / a.hypot(1.0),
+            Kind::Sphere => (away.norm() - a).abs(),
+            Kind::Torus => ((radius - a).hypot(along) - b).abs(),
+        }
+    }
+
     /// Whether two carriers differ by at most `near`, a distance in a part of the given size.
     fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
         let sizes = self.sizes.iter().zip(other.sizes);
@@ -119,13 +135,13 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
     let unit = |i: usize| Vector3::ith_axis(i).into_inner();
     let low = |i: usize| Carrier::plane(zero, unit(i));
     let high = |i: usize, at: f64| Carrier::plane(unit(i) * at, unit(i));
-    match *shape {
-        Shape::Block(size) => (0..3).flat_map(|i| [low(i), high(i, size[i])]).collect(),
-        Shape::Wedge([x, y, z]) => {
+    match shape {
+        &Shape::Block(size) => (0..3).flat_map(|i| [low(i), high(i, size[i])]).collect(),
+        &Shape::Wedge([x, y, z]) => {
             let slant = Carrier::plane(unit(0) * x, Vector3::new(1.0 / x, 0.0, 1.0 / z));
             vec![low(0), low(1), high(1, y), low(2), slant]
         }
-        Shape::Frustum {
+        &Shape::Frustum {
             base,
             slope,
             height,
@@ -138,9 +154,71 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
             };
             vec![low(2), high(2, height), side]
         }
-        Shape::Sphere(r) => vec![Carrier::new(Kind::Sphere, zero, zero, [r, 0.0])],
-        Shape::Torus { major, minor } => {
+        &Shape::Sphere(r) => vec![Carrier::new(Kind::Sphere, zero, zero, [r, 0.0])],
+        &Shape::Torus { major, minor } => {
             vec![Carrier::new(Kind::Torus, zero, z, [major, minor])]
+        }
+        Shape::Section(section) => section_carriers(section),
+    }
+}
+
+/// The surfaces of a prism or a revolution in its own frame.
+fn section_carriers(section: &SectionShape) -> Vec<Carrier> {
+    let (zero, z) = (Vector3::zeros(), Vector3::z());
+    match section.sweep {
+        Sweep::Along { height, growth } => {
+            let ends = [zero, z * height].map(|at| Carrier::plane(at, z));
+            let walls = section.edges.iter().map(|edge| extruded(edge, growth));
+            ends.into_iter().chain(walls).collect()
+        }
+        Sweep::About { angle } => {
+            let end = |angle: f64| {
+                let (sin, cos) = angle.sin_cos();
+                Carrier::plane(zero, Vector3::new(-sin, cos, 0.0))
+            };
+            let ends = angle.into_iter().flat_map(|angle| [end(0.0), end(angle)]);
+            ends.chain(section.edges.iter().map(revolved)).collect()
+        }
+    }
+}
+
+fn extruded(edge: &Edge, growth: f64) -> Carrier {
+    let z = Vector3::z();
+    let [sx, sy] = edge.start;
+    match edge.circle {
+        None => {
+            let [dx, dy] = [edge.end[0] - sx, edge.end[1] - sy];
+            let normal = Vector3::new(dy, -dx, growth * (dx * sy - dy * sx));
+            Carrier::plane(Vector3::new(sx, sy, 0.0), normal)
+        }
+        Some(circle) if growth == 0.0 => {
+            let [x, y] = circle.centre;
+            let point = Vector3::new(x, y, 0.0);
+            Carrier::new(Kind::Cylinder, point, z, [circle.radius, 0.0])
+        }
+        Some(circle) => {
+            let slope = (circle.radius * growth).abs();
+            Carrier::new(Kind::Cone, z * (-1.0 / growth), z, [slope, 0.0])
+        }
+    }
+}
+
+fn revolved(edge: &Edge) -> Carrier {
+    let (zero, z) = (Vector3::zeros(), Vector3::z());
+    let ([sr, sz], [er, ez]) = (edge.start, edge.end);
+    match edge.circle {
+        Some(circle) => {
+            let [major, at] = circle.centre;
+            match major == 0.0 {
+                true => Carrier::new(Kind::Sphere, z * at, zero, [circle.radius, 0.0]),
+                false => Carrier::new(Kind::Torus, z * at, z, [major, circle.radius]),
+            }
+        }
+        None if sz == ez => Carrier::plane(z * sz, z),
+        None if sr == er => Carrier::new(Kind::Cylinder, zero, z, [sr, 0.0]),
+        None => {
+            let slope = (er - sr) / (ez - sz);
+            Carrier::new(Kind::Cone, z * (sz - sr / slope), z, [slope.abs(), 0.0])
         }
     }
 }
@@ -213,10 +291,7 @@ impl<'a> Surfaces<'a> {
     fn crossing(&self, ray: &Ray, event: &Event) -> Option<SurfaceCrossing> {
         let leaf = &self.material.leaves[event.leaf];
         let p = leaf.local_point(&(ray.origin + ray.direction * event.at));
-        let off = |c: &Carrier| match c.kind {
-            Kind::Plane => c.axis.dot(&(p - c.point)).abs(),
-            _ => leaf.shape.level(&p).abs(),
-        };
+        let off = |c: &Carrier| c.distance(&p);
         let own = self.of_leaves[event.leaf].iter();
         let LeafSurface { carrier, surface } =
             own.min_by(|a, b| off(&a.carrier).total_cmp(&off(&b.carrier)))?;

@@ -6,6 +6,8 @@
 //! against it.
 
 mod crossing;
+mod polynomial;
+mod section;
 mod shape;
 mod sight;
 mod volume;

@@ -63,6 +63,11 @@ pub(super) fn bad_length(
         PrimitiveError::Negative(what) => format!("a {what} of zero or more"),
         PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
         PrimitiveError::NotARing => "a minor radius less than the major radius".to_owned(),
+        PrimitiveError::AcrossAxis => "a figure on one side of the axis".to_owned(),
+        PrimitiveError::CircleAcrossAxis => {
+            "arcs about points of the axis, or of circles that do not reach it".to_owned()
+        }
+        PrimitiveError::ObliqueArc => "arcs about the origin, where a figure is scaled".to_owned(),
     };
     SpannedError::input(span, found, expected)
 }

@@ -37,37 +37,12 @@ pub(super) struct Placement {
 pub(super) const F64_DIGITS: f64 = 1e-12;
 
 impl Placement {
-    /// The identity placement.
-    pub(super) fn identity() -> Self {
-        Self {
-            moves: Transform::new(),
-            mirrored: false,
-            residual: 0.0,
-            full: false,
-        }
-    }
-
     /// Whether the matrix differs from the one that is written. A file of six digits has lost
     /// digits of its offsets, too.
     pub(super) fn replaces(&self) -> bool {
         match self.full {
             true => self.residual > F64_DIGITS,
             false => self.residual > 0.0,
-        }
-    }
-
-    /// This placement first, then the other.
-    pub(super) fn then(&self, outer: &Self) -> Self {
-        let inner = if outer.mirrored {
-            self.moves.mirrored_y()
-        } else {
-            self.moves.clone()
-        };
-        Self {
-            moves: inner.then(outer.moves.clone()),
-            mirrored: self.mirrored != outer.mirrored,
-            residual: self.residual.max(outer.residual),
-            full: self.full && outer.full,
         }
     }
 }

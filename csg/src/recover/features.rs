@@ -70,6 +70,14 @@ pub(super) fn features(primitive: &Primitive, axis: LocalAxis) -> Vec<Feature> {
             true => about_centre(&[major, &(major + minor), &(major - minor)]),
             false => about_centre(&[minor]),
         },
+        Primitive::Prism { height, .. } => match is_across(axis) {
+            true => Vec::new(),
+            false => vec![plane(&zero), plane(height)],
+        },
+        Primitive::Revolution { .. } => match is_across(axis) {
+            true => about_centre(&[]),
+            false => Vec::new(),
+        },
     }
 }
 

@@ -106,7 +106,7 @@ fn groups(poses: &[Pose<'_>]) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     // Primitives with more axes determine frames that the others fit.
     let order = |i: &usize| match poses[*i].placed.primitive {
-        Primitive::Block { .. } | Primitive::Wedge { .. } => 0,
+        Primitive::Block { .. } | Primitive::Wedge { .. } | Primitive::Prism { .. } => 0,
         Primitive::Sphere { .. } => 2,
         _ => 1,
     };
@@ -181,7 +181,10 @@ fn axis_along(primitive: &Primitive, direction: &Vector3<f64>) -> Option<AxisUse
         is_reversed: false,
     };
     match primitive {
-        Primitive::Block { .. } | Primitive::Wedge { .. } => parallel.map(along),
+        Primitive::Block { .. } | Primitive::Wedge { .. } | Primitive::Prism { .. } => {
+            parallel.map(along)
+        }
+        Primitive::Revolution { angle: Some(_), .. } => parallel.map(along),
         Primitive::Sphere { .. } => Some(across),
         _ if parallel == Some(2) => Some(along(2)),
         _ => (direction.z.abs() <= SAME).then_some(across),

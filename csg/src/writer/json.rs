@@ -5,6 +5,7 @@ use premio_kernel::number::rational::{Rational, whole};
 use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
+use crate::figure::{Figure, FigureEdge};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -97,6 +98,25 @@ impl Language for Json {
     }
 }
 
+/// The contours of a figure: lists of corners `[x, y]`, or `[x, y, cx, cy, r]` where an arc about
+/// (cx, cy) begins, with a negative radius if it runs clockwise.
+fn figure(figure: &Figure) -> String {
+    let corner = |edge: &FigureEdge| {
+        let mut numbers = edge.start.to_vec();
+        if let Some(arc) = &edge.arc {
+            numbers.extend(arc.centre.clone());
+            numbers.push(arc.signed_radius());
+        }
+        list(&numbers)
+    };
+    let contour = |edges: &[FigureEdge]| {
+        let corners: Vec<String> = edges.iter().map(corner).collect();
+        format!("[{}]", corners.join(","))
+    };
+    let contours: Vec<String> = figure.contours().map(contour).collect();
+    format!("[{}]", contours.join(","))
+}
+
 fn members(primitive: &Primitive) -> String {
     match primitive {
         Primitive::Block { size } => format!(r#""block","size":{}"#, list(size)),
@@ -117,6 +137,27 @@ fn members(primitive: &Primitive) -> String {
         Primitive::Torus { major, minor } => {
             let [major, minor] = [major, minor].map(decimal);
             format!(r#""torus","R":{major},"r":{minor}"#)
+        }
+        Primitive::Prism {
+            figure: of,
+            height,
+            top,
+        } => {
+            let top = match top.is_one() {
+                true => String::new(),
+                false => format!(r#","top":{}"#, decimal(top)),
+            };
+            format!(
+                r#""prism","figure":{},"h":{}{top}"#,
+                figure(of),
+                decimal(height)
+            )
+        }
+        Primitive::Revolution { figure: of, angle } => {
+            let angle = angle.as_ref().map_or(String::new(), |angle| {
+                format!(r#","angle":{}"#, decimal(angle.degrees()))
+            });
+            format!(r#""revolution","figure":{}{angle}"#, figure(of))
         }
     }
 }

@@ -15,7 +15,8 @@ mod turns;
 use premio_kernel::number::rational::Rational;
 
 use crate::builder::{Builder, BuilderNode, MAX_LEAVES, Placing, SolidId};
-use crate::primitive::Primitive;
+use crate::figure::Figure;
+use crate::primitive::{MirrorImage, Primitive};
 use crate::reader::Format;
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
@@ -43,6 +44,12 @@ pub enum WriteError {
     /// The part belongs to another builder.
     #[error("a solid of another builder was used")]
     ForeignSolid,
+    /// `.csg` has circles, and no arcs.
+    #[error("`.csg` cannot represent a figure with arcs")]
+    Arcs,
+    /// `.padl` has no figures.
+    #[error("`.padl` has no word for a prism or a revolution")]
+    Figure,
     /// The text would be too long.
     #[error("a text of more than {MAX_TEXT} bytes")]
     TooLong,
@@ -68,11 +75,38 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     }
     let top = builder.draft_of(part).map(Use::new);
     match format {
+        Format::Csg if has_figure(builder, part, |figure| !figure.is_polygon()) => {
+            return Err(WriteError::Arcs);
+        }
+        Format::Padl if has_figure(builder, part, |_| true) => return Err(WriteError::Figure),
+        _ => {}
+    }
+    match format {
         Format::Padl => padl::write(builder, top.ok_or(WriteError::Empty)?),
         Format::Csg => scad::write(builder, top),
         Format::Json => json::write(builder, top),
         Format::Asc | Format::Pov => Err(WriteError::ReadOnly),
     }
+}
+
+/// Whether a part uses a figure of some kind.
+fn has_figure(builder: &Builder, part: SolidId, is_it: impl Fn(&Figure) -> bool) -> bool {
+    let mut seen = std::collections::BTreeSet::new();
+    let mut ahead: Vec<usize> = builder.draft_of(part).into_iter().collect();
+    while let Some(draft) = ahead.pop() {
+        if !seen.insert(draft) {
+            continue;
+        }
+        match builder.draft(draft) {
+            BuilderNode::Leaf(
+                Primitive::Prism { figure, .. } | Primitive::Revolution { figure, .. },
+            ) if is_it(figure) => return true,
+            BuilderNode::Leaf(_) => {}
+            BuilderNode::Operation { children, .. } => ahead.extend(children),
+            BuilderNode::Moved { child, .. } => ahead.push(*child),
+        }
+    }
+    false
 }
 
 /// A use of a part: possibly mirrored by `y -> -y`, and possibly scaled.
@@ -151,10 +185,22 @@ impl Use {
             Some(factor) => primitive.scaled(factor),
             None => primitive.clone(),
         };
-        let shift = self.mirrored.then(|| primitive.mirror_y());
-        let shift = shift.filter(|motion| !motion.is_identity());
-        let shift = shift.map(|motion| TransformStep::Shift(motion.offset().clone()));
-        UsedPrimitive { primitive, shift }
+        if !self.mirrored {
+            let step = None;
+            return UsedPrimitive { primitive, step };
+        }
+        let MirrorImage { primitive, motion } = primitive.mirrored_y();
+        let step = match &primitive {
+            Primitive::Revolution {
+                angle: Some(angle), ..
+            } => Some(TransformStep::Turn {
+                axis: [Rational::ZERO, Rational::ZERO, Rational::ONE],
+                degrees: -angle.degrees(),
+            }),
+            _ if motion.is_identity() => None,
+            _ => Some(TransformStep::Shift(motion.offset().clone())),
+        };
+        UsedPrimitive { primitive, step }
     }
 }
 
@@ -169,8 +215,8 @@ struct ResolvedUse {
 /// A primitive as it is used.
 struct UsedPrimitive {
     primitive: Primitive,
-    /// The translation that a mirror causes.
-    shift: Option<TransformStep>,
+    /// The motion that a mirror causes.
+    step: Option<TransformStep>,
 }
 
 /// The syntax of a language.
@@ -231,8 +277,8 @@ fn enter(
     }
     match builder.draft(part.draft) {
         BuilderNode::Leaf(primitive) => {
-            let UsedPrimitive { primitive, shift } = part.primitive(primitive);
-            steps.splice(0..0, shift);
+            let UsedPrimitive { primitive, step } = part.primitive(primitive);
+            steps.splice(0..0, step);
             let steps = Transform::tidied(steps);
             language.leaf(&primitive, &steps);
         }

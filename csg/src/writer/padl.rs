@@ -8,6 +8,7 @@ use super::number::quotient;
 use super::turns::{AxisTurn, about_axes};
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::{Builder, BuilderNode};
+use crate::figure::{Figure, FigureEdge};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -117,6 +118,24 @@ impl Language for Padl {
     }
 }
 
+/// A figure: for each contour, the numbers of its corners.
+fn figure(figure: &Figure) -> String {
+    let corner = |edge: &FigureEdge| {
+        let mut numbers: Vec<String> = edge.start.iter().map(quotient).collect();
+        if let Some(arc) = &edge.arc {
+            numbers.extend(arc.centre.iter().map(quotient));
+            numbers.push(quotient(&arc.signed_radius()));
+        }
+        format!("[{}]", numbers.join(", "))
+    };
+    let contour = |edges: &[FigureEdge]| {
+        let corners: Vec<String> = edges.iter().map(corner).collect();
+        format!("[{}]", corners.join(", "))
+    };
+    let contours: Vec<String> = figure.contours().map(contour).collect();
+    format!("PGN({})", contours.join(", "))
+}
+
 fn call(primitive: &Primitive) -> String {
     let with = |name: &str, arguments: &[(&str, &Rational)]| {
         let all = arguments.iter();
@@ -137,5 +156,22 @@ fn call(primitive: &Primitive) -> String {
         }
         Primitive::Sphere { radius } => with("SPH", &[("R", radius)]),
         Primitive::Torus { major, minor } => with("TOR", &[("RMAJ", major), ("RMIN", minor)]),
+        Primitive::Prism {
+            figure: of,
+            height,
+            top,
+        } => {
+            let top = match top.is_one() {
+                true => String::new(),
+                false => format!(", TOP={}", quotient(top)),
+            };
+            format!("PRI({}, H={}{top})", figure(of), quotient(height))
+        }
+        Primitive::Revolution { figure: of, angle } => {
+            let angle = angle.as_ref().map_or(String::new(), |angle| {
+                format!(", ANGLE={}", quotient(angle.degrees()))
+            });
+            format!("REV({}{angle})", figure(of))
+        }
     }
 }

@@ -6,6 +6,7 @@ use premio_kernel::number::rational::to_f64;
 use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
+use crate::figure::{Figure, FigureEdge};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -114,6 +115,29 @@ impl Language for Scad {
     }
 }
 
+/// The polygon of a figure, by points and paths.
+fn polygon(figure: &Figure) -> String {
+    let corner = |edge: &FigureEdge| {
+        let [x, y] = edge.start.each_ref().map(decimal);
+        format!("[{x}, {y}]")
+    };
+    let points: Vec<String> = figure.edges().iter().map(corner).collect();
+    let mut first = 0;
+    let paths = figure.contours().map(|contour| {
+        let path: Vec<String> = (first..first + contour.len())
+            .map(|i| i.to_string())
+            .collect();
+        first += contour.len();
+        format!("[{}]", path.join(", "))
+    });
+    let paths: Vec<String> = paths.collect();
+    format!(
+        "polygon(points = [{}], paths = [{}]);",
+        points.join(", "),
+        paths.join(", ")
+    )
+}
+
 fn node(primitive: &Primitive) -> String {
     match primitive {
         Primitive::Block { size } => {
@@ -145,6 +169,26 @@ fn node(primitive: &Primitive) -> String {
                 "rotate_extrude(angle = 360, {SMOOTH}) {{ \
                  multmatrix([[1, 0, 0, {major}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ \
                  circle({SMOOTH}, r = {minor}); }} }}"
+            )
+        }
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => {
+            let (height, top) = (decimal(height), decimal(top));
+            format!(
+                "linear_extrude(height = {height}, center = false, scale = [{top}, {top}]) {{ {} }}",
+                polygon(figure)
+            )
+        }
+        Primitive::Revolution { figure, angle } => {
+            let angle = angle
+                .as_ref()
+                .map_or("360".to_owned(), |a| decimal(a.degrees()));
+            format!(
+                "rotate_extrude(angle = {angle}, {SMOOTH}) {{ {} }}",
+                polygon(figure)
             )
         }
     }

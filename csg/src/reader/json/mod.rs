@@ -1,5 +1,6 @@
 //! `.json`: the tree itself.
 
+mod figure;
 mod value;
 
 use std::ops::Range;
@@ -42,7 +43,7 @@ const OPERATIONS: [(&str, Operation); 3] = [
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
-const PRIMITIVES: [(&str, &[&str]); 7] = [
+const PRIMITIVES: [(&str, &[&str]); 9] = [
     ("block", &["size"]),
     ("wedge", &["size"]),
     ("cylinder", &["r", "h"]),
@@ -50,6 +51,8 @@ const PRIMITIVES: [(&str, &[&str]); 7] = [
     ("frustum", &["r1", "r2", "h"]),
     ("sphere", &["r"]),
     ("torus", &["R", "r"]),
+    ("prism", &["figure", "h", "top"]),
+    ("revolution", &["figure", "angle"]),
 ];
 
 /// A pending step; the solids created so far are on a stack.
@@ -153,8 +156,17 @@ impl<'a> Reader<'a> {
         let Content::Text(name) = &self.document.value(name.value).content else {
             return Err(fields.neither());
         };
-        let lengths = fields.lengths(keys)?;
         let moves = fields.moves()?;
+        let swept = match name.as_str() {
+            "prism" => Some(figure::prism(fields)?),
+            "revolution" => Some(figure::revolution(fields)?),
+            _ => None,
+        };
+        if let Some(primitive) = swept {
+            let part = self.builder.primitive(primitive);
+            return Ok(self.builder.moved(part, moves));
+        }
+        let lengths = fields.lengths(keys)?;
         let primitive = make(name, &lengths).map_err(|error| {
             let length = &lengths[length_index(error.dimension(), lengths.len())];
             bad_length(error, Some(&length.value), length.span.clone())

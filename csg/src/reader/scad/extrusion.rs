@@ -1,21 +1,22 @@
-//! Plane figures that `linear_extrude` extrudes to solids.
-//!
-//! Extruding a figure commutes with motions in its plane and with set operations, so each figure
-//! becomes a solid by itself.
+//! Straight extrusions whose solids are primitives: circles, rectangles, and triangles with a right
+//! angle.
 
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
-use super::arguments::{Argument, Arguments, Value};
-use super::shapes::{MovedPrimitive, Shape, check_smooth, checked, half, length, radius};
+use super::arguments::{Arguments, Value};
+use super::figures::{contours, square_size};
+use super::measures::{MovedPrimitive, Shape, checked, half, length, radius};
+use crate::figure::FigurePoint;
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 
-/// The height of an extrusion and its start.
+/// The height of an extrusion, its start, and the factor by which it is scaled at the top.
 #[derive(Debug, Clone)]
 pub(super) struct Raise {
-    height: Rational,
+    pub height: Rational,
     bottom: Rational,
+    pub top: Rational,
 }
 
 impl Raise {
@@ -26,35 +27,49 @@ impl Raise {
             Some(height) => length(height, "height")?,
             None => length(arguments.require("height")?, "height")?,
         };
+        let top = scale(arguments)?;
         check_straight(arguments)?;
         let bottom = if arguments.flag("center")? {
             -half(&height)
         } else {
             Rational::ZERO
         };
-        Ok(Self { height, bottom })
+        Ok(Self {
+            height,
+            bottom,
+            top,
+        })
     }
 
-    fn at(&self, x: Rational, y: Rational) -> Transform {
+    pub(super) fn at(&self, x: Rational, y: Rational) -> Transform {
         Transform::shift([x, y, self.bottom.clone()])
     }
 }
 
-/// Refuses arguments that would make the sides of an extrusion not vertical.
-fn check_straight(arguments: &Arguments) -> Result<(), SpannedError> {
-    let one = Rational::ONE;
-    if let Some(scale) = arguments.find("scale") {
-        let unscaled = match &scale.value {
-            Value::Number(factor) => *factor == one,
-            Value::List(items) => items
-                .iter()
-                .all(|item| item.number().is_ok_and(|factor| *factor == one)),
-            _ => false,
-        };
-        if !unscaled {
-            return Err(scale.wrong("`scale` of 1: only straight extrusions are read"));
+/// The factor at the top.
+fn scale(arguments: &Arguments) -> Result<Rational, SpannedError> {
+    let Some(scale) = arguments.find("scale") else {
+        return Ok(Rational::ONE);
+    };
+    let factor = match &scale.value {
+        Value::List(_) => {
+            let [x, y] = scale.list("a number or a list of two")?;
+            if x.number()? != y.number()? {
+                let expected = "the same `scale` along x and y: otherwise the sides are not plane";
+                return Err(scale.wrong(expected));
+            }
+            x.number()?
         }
+        _ => scale.number()?,
+    };
+    match *factor < Rational::ZERO {
+        true => Err(scale.wrong("a `scale` of zero or more")),
+        false => Ok(factor.clone()),
     }
+}
+
+/// Refuses arguments that would make the sides of an extrusion twisted or oblique.
+fn check_straight(arguments: &Arguments) -> Result<(), SpannedError> {
     if let Some(twist) = arguments.find("twist")
         && !twist.number()?.is_zero()
     {
@@ -69,11 +84,8 @@ fn check_straight(arguments: &Arguments) -> Result<(), SpannedError> {
     Ok(())
 }
 
-pub(super) fn circle(
-    arguments: &mut Arguments,
-    raise: &Raise,
-    smooth: bool,
-) -> Result<Shape, SpannedError> {
+/// A cylinder.
+pub(super) fn circle(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let Some(radius) = radius(arguments, "r", "d")? else {
         return arguments.require("r").map(|_| None);
@@ -81,22 +93,16 @@ pub(super) fn circle(
     if radius.is_zero() || raise.height.is_zero() {
         return Ok(None);
     }
-    check_smooth(arguments, smooth)?;
-    let cylinder = Primitive::cylinder(radius, raise.height.clone());
+    let cylinder = Primitive::frustum(radius.clone(), &radius * &raise.top, raise.height.clone());
     let moves = raise.at(Rational::ZERO, Rational::ZERO);
     let cylinder = checked(cylinder, &arguments.span)?;
     Ok(Some(MovedPrimitive::new(cylinder, moves)))
 }
 
+/// A block.
 pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
     arguments.bind(&["size", "center"])?;
-    let size = arguments.require("size")?;
-    let (x, y) = if size.number().is_ok() {
-        (length(size, "size")?, length(size, "size")?)
-    } else {
-        let [x, y] = size.list("a number or a list of two")?;
-        (length(x, "size along x")?, length(y, "size along y")?)
-    };
+    let [x, y] = square_size(arguments)?;
     if x.is_zero() || y.is_zero() || raise.height.is_zero() {
         return Ok(None);
     }
@@ -110,18 +116,21 @@ pub(super) fn square(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, 
     Ok(Some(MovedPrimitive::new(block, moves)))
 }
 
-/// A triangle with a right angle between legs along the axes: a wedge.
-pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape, SpannedError> {
+/// A triangle with a right angle between legs along the axes: a wedge. `None` for another polygon.
+pub(super) fn triangle(
+    arguments: &mut Arguments,
+    raise: &Raise,
+) -> Result<Option<Shape>, SpannedError> {
     arguments.bind(&["points", "paths"])?;
-    let points = arguments.require("points")?;
-    let refused =
-        || points.wrong("three points with a right angle between sides along x and y: a wedge");
-    let corners = chosen(arguments, points.items("a list of points")?)?;
-    let [a, b, c] = corners.as_slice() else {
-        return Err(refused());
+    let contours = contours(arguments)?;
+    let [contour] = contours.as_slice() else {
+        return Ok(None);
+    };
+    let [a, b, c] = contour.as_slice() else {
+        return Ok(None);
     };
     if raise.height.is_zero() {
-        return Ok(None);
+        return Ok(Some(None));
     }
     let turns = [
         [a, b, c],
@@ -136,38 +145,15 @@ pub(super) fn polygon(arguments: &mut Arguments, raise: &Raise) -> Result<Shape,
         .into_iter()
         .find(|[o, p, q]| o[1] == p[1] && o[0] == q[0]);
     let Some([corner, along_x, along_y]) = right else {
-        return Err(refused());
+        return Ok(None);
     };
     let leg_x = &along_x[0] - &corner[0];
     let leg_y = &along_y[1] - &corner[1];
     if leg_x.is_zero() || leg_y.is_zero() {
-        return Err(refused());
+        return Ok(None);
     }
-    wedge(arguments, raise, corner, leg_x, leg_y).map(Some)
-}
-
-type Point = [Rational; 2];
-
-fn point(argument: &Argument) -> Result<Point, SpannedError> {
-    let [x, y] = argument.list("a point: a list of two numbers")?;
-    Ok([x.number()?.clone(), y.number()?.clone()])
-}
-
-/// The points in the order of the single path, if a path is given.
-fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, SpannedError> {
-    let Some(paths) = arguments.find("paths") else {
-        return points.iter().map(point).collect();
-    };
-    let [path] = paths.list("one path")?;
-    let index = |argument: &Argument| {
-        let value = argument.number()?;
-        let index = (0..points.len()).find(|&i| Rational::from(i) == *value);
-        index.ok_or_else(|| argument.wrong("the index of a point"))
-    };
-    let path = path.items("a path: a list of indices of points")?;
-    path.iter()
-        .map(|item| point(&points[index(item)?]))
-        .collect()
+    let wedge = wedge(arguments, raise, corner, leg_x, leg_y)?;
+    Ok(Some(Some(wedge)))
 }
 
 /// The wedge of an extruded triangle. The primitive's right angle lies between x and z, and its
@@ -176,7 +162,7 @@ fn chosen(arguments: &Arguments, points: &[Argument]) -> Result<Vec<Point>, Span
 fn wedge(
     arguments: &Arguments,
     raise: &Raise,
-    corner: &Point,
+    corner: &FigurePoint,
     leg_x: Rational,
     leg_y: Rational,
 ) -> Result<MovedPrimitive, SpannedError> {

@@ -5,11 +5,17 @@
 
 mod arguments;
 mod extrusion;
+mod figures;
+mod hull;
+mod measures;
 mod nodes;
+mod plane;
 mod shapes;
 
 use self::arguments::Arguments;
-use self::nodes::{Around, Kind, Node};
+use self::hull::{Around, HullOperand};
+use self::measures::{MovedPrimitive, Shape};
+use self::nodes::{Kind, Node};
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::{Notes, Remarks};
@@ -39,6 +45,8 @@ struct Frame {
     kind: Kind,
     around: Around,
     children: Vec<SolidId>,
+    /// The operands of the hull that this is, or is inside.
+    operands: Vec<HullOperand>,
     open: Lexeme,
     /// The child is one statement, without braces.
     single: bool,
@@ -92,6 +100,7 @@ impl<'a> Reader<'a> {
             kind: Kind::Union,
             around: Around::Nothing,
             children: Vec::new(),
+            operands: Vec::new(),
             open,
             single: false,
             live,
@@ -102,7 +111,7 @@ impl<'a> Reader<'a> {
             match lexeme.token {
                 Token::End => return self.end_of_file(lexeme),
                 Token::Symbol('}') => self.close_block(lexeme)?,
-                Token::Symbol(';') => self.stray_semicolon(),
+                Token::Symbol(';') => self.stray_semicolon()?,
                 _ => self.statement(lexeme)?,
             }
         }
@@ -133,31 +142,44 @@ impl<'a> Reader<'a> {
         if !closes {
             return Err(self.cursor.unexpected(brace, "a node"));
         }
-        self.close_frame();
-        self.close_singles();
-        Ok(())
+        self.close_frame()?;
+        self.close_singles()
     }
 
     /// A single `;`: an empty statement, which may also be the whole of a block without braces.
-    fn stray_semicolon(&mut self) {
-        self.close_singles();
+    fn stray_semicolon(&mut self) -> Result<(), SpannedError> {
+        self.close_singles()
     }
 
-    fn close_singles(&mut self) {
+    fn close_singles(&mut self) -> Result<(), SpannedError> {
         while self.frames.len() > 1 && self.frames.last().is_some_and(|f| f.single) {
-            self.close_frame();
+            self.close_frame()?;
         }
+        Ok(())
     }
 
-    fn close_frame(&mut self) {
+    fn close_frame(&mut self) -> Result<(), SpannedError> {
         let Some(frame) = self.frames.pop() else {
-            return;
+            return Ok(());
         };
         if !frame.live {
-            return;
+            return Ok(());
         }
-        let part = frame.kind.combine(&mut self.builder, &frame.children);
+        let part = match (&frame.kind, &frame.around) {
+            (Kind::Hull, Around::Hull(hull)) => {
+                let shape = hull.hull(&frame.operands, &frame.open.span())?;
+                self.place(shape)
+            }
+            (_, Around::Hull(_)) => {
+                if let Some(outer) = self.frames.last_mut() {
+                    outer.operands.extend(frame.operands);
+                }
+                return Ok(());
+            }
+            _ => frame.kind.combine(&mut self.builder, &frame.children),
+        };
         self.give(part, frame.root);
+        Ok(())
     }
 
     /// Adds a finished part to the surrounding block.
@@ -224,15 +246,22 @@ impl<'a> Reader<'a> {
                 let part = self.place(*shape);
                 self.cursor.expect(';', "after a primitive")?;
                 self.give(part, root);
-                self.close_singles();
+                self.close_singles()?;
+            }
+            Node::Operand(operand) => {
+                self.cursor.expect(';', "after a primitive")?;
+                if let Some(frame) = self.frames.last_mut() {
+                    frame.operands.extend(operand);
+                }
+                self.close_singles()?;
             }
             Node::Block { kind, around } => self.open_block(kind, around, name, live, root)?,
         }
         Ok(())
     }
 
-    fn place(&mut self, shape: shapes::Shape) -> SolidId {
-        let Some(shapes::MovedPrimitive { primitive, moves }) = shape else {
+    fn place(&mut self, shape: Shape) -> SolidId {
+        let Some(MovedPrimitive { primitive, moves }) = shape else {
             return SolidId::EMPTY;
         };
         let part = self.builder.primitive(primitive);
@@ -256,11 +285,11 @@ impl<'a> Reader<'a> {
         if !single {
             self.cursor.next();
         }
-        let children = Vec::new();
         self.frames.push(Frame {
             kind,
             around,
-            children,
+            children: Vec::new(),
+            operands: Vec::new(),
             open,
             single,
             live,

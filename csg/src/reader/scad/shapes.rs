@@ -1,71 +1,31 @@
 //! OpenSCAD's primitives as primitives of the tree.
 
-use std::ops::Range;
-
-use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
-use super::super::number::{bad_length, show};
-use super::arguments::{Argument, Arguments};
-use crate::primitive::{Dimension, Primitive, PrimitiveError};
+use super::super::number::show;
+use super::arguments::Arguments;
+use super::figures::{bad_figure, regular_polygon};
+use super::measures::{MOST_SIDES, MovedPrimitive, Shape, checked, half, length, radius, sides};
+use crate::figure::PlaneMap;
+use crate::primitive::Primitive;
 use crate::transform::Transform;
-
-/// A primitive in its position; `None` for one of size zero, which adds nothing.
-pub(super) type Shape = Option<MovedPrimitive>;
-
-/// A primitive in its position.
-pub(super) struct MovedPrimitive {
-    pub primitive: Primitive,
-    pub moves: Transform,
-}
-
-impl MovedPrimitive {
-    pub(super) fn new(primitive: Primitive, moves: Transform) -> Self {
-        Self { primitive, moves }
-    }
-}
-
-/// A non-negative length.
-pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, SpannedError> {
-    let value = argument.number()?;
-    if *value < Rational::ZERO {
-        let expected = format!("a {what} of zero or more");
-        return Err(SpannedError::input(
-            argument.span.clone(),
-            show(value),
-            expected,
-        ));
-    }
-    Ok(value.clone())
-}
 
 fn shift_z(z: Rational) -> Transform {
     Transform::shift([Rational::ZERO, Rational::ZERO, z])
 }
 
-/// Lengths that were checked already, so an error points at the whole node.
-pub(super) fn checked(
-    made: Result<Primitive, PrimitiveError>,
-    span: &Range<usize>,
-) -> Result<Primitive, SpannedError> {
-    made.map_err(|error| bad_length(error, None, span.clone()))
-}
-
-/// Refuses a node whose `$fn` requests a polygon in place of a circle, unless `smooth` overrides
-/// it.
+/// Refuses a node whose `$fn` requests polygons in place of circles, unless `smooth` overrides it.
 pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), SpannedError> {
-    const FEWEST_SMOOTH: i32 = 16;
-    let Some(argument) = arguments.find("$fn") else {
-        return Ok(());
-    };
-    let value = argument.number()?;
-    let polygon = *value > Rational::ZERO && *value <= Rational::from(FEWEST_SMOOTH);
-    if !polygon || smooth {
+    if sides(arguments, smooth)?.is_none() {
         return Ok(());
     }
-    let found = format!("{} for `$fn`, which asks for a polygon", show(value));
-    let expected = format!("0 or more than {FEWEST_SMOOTH}, which is read as a smooth surface");
+    let argument = arguments.require("$fn")?;
+    let found = format!(
+        "{} for `$fn`, which asks for facets",
+        show(argument.number()?)
+    );
+    let expected = format!("0 or more than {MOST_SIDES}, which is read as a smooth surface");
     Err(SpannedError::input(argument.span.clone(), found, expected)
         .help("`--smooth` reads every `$fn` as a smooth surface"))
 }
@@ -96,26 +56,6 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
         checked(Primitive::block(size), &arguments.span)?,
         moves,
     )))
-}
-
-/// Half of a length.
-pub(super) fn half(value: &Rational) -> Rational {
-    value / Rational::from(2)
-}
-
-/// A radius, or half a diameter.
-pub(super) fn radius(
-    arguments: &Arguments,
-    radius: &str,
-    diameter: &str,
-) -> Result<Option<Rational>, SpannedError> {
-    if let Some(argument) = arguments.find(radius) {
-        return length(argument, "radius").map(Some);
-    }
-    match arguments.find(diameter) {
-        Some(argument) => Ok(Some(half(&length(argument, "diameter")?))),
-        None => Ok(None),
-    }
 }
 
 fn required_radius(arguments: &Arguments) -> Result<Rational, SpannedError> {
@@ -155,45 +95,53 @@ pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape,
     if height.is_zero() || (base.is_zero() && top.is_zero()) {
         return Ok(None);
     }
-    check_smooth(arguments, smooth)?;
     let lift = if arguments.flag("center")? {
         -half(&height)
     } else {
         Rational::ZERO
     };
+    if let Some(count) = sides(arguments, smooth)? {
+        return faceted(arguments, [&base, &top], height, lift, count).map(Some);
+    }
     let frustum = checked(Primitive::frustum(base, top, height), &arguments.span)?;
     Ok(Some(MovedPrimitive::new(frustum, shift_z(lift))))
 }
 
-/// A circle revolved about the y axis of its plane, which becomes z: a torus.
-pub(super) fn revolved_circle(
-    arguments: &mut Arguments,
-    placing: &Motion,
-    smooth: bool,
-) -> Result<Shape, SpannedError> {
-    arguments.bind(&["r", "d"])?;
+/// A prism or pyramid with a regular base.
+fn faceted(
+    arguments: &Arguments,
+    [base, top]: [&Rational; 2],
+    height: Rational,
+    lift: Rational,
+    count: u32,
+) -> Result<MovedPrimitive, SpannedError> {
+    // A pyramid on its apex is one that is turned over.
+    let is_turned = base.is_zero();
+    let [wide, narrow] = if is_turned { [top, base] } else { [base, top] };
+    let figure = regular_polygon(wide, count).map_err(|e| bad_figure(&e, &arguments.span))?;
+    let prism = Primitive::scaled_prism(figure, height.clone(), narrow / wide);
+    let prism = checked(prism, &arguments.span)?;
+    if !is_turned {
+        return Ok(MovedPrimitive::new(prism, shift_z(lift)));
+    }
+    let over = [[1, 0, 0], [0, -1, 0], [0, 0, -1]].map(|row| row.map(Rational::from));
+    let over = Transform::quarter_turns(&over).unwrap_or_default();
+    Ok(MovedPrimitive::new(
+        prism,
+        over.then(shift_z(lift + height)),
+    ))
+}
+
+/// A disc revolved about the second axis of its plane by a whole turn, if that is a ring torus.
+pub(super) fn ring(arguments: &Arguments, map: &PlaneMap) -> Result<Option<Shape>, SpannedError> {
     let minor = required_radius(arguments)?;
+    let [x, y] = &map.offset;
     if minor.is_zero() {
+        return Ok(Some(None));
+    }
+    if *x <= minor {
         return Ok(None);
     }
-    check_smooth(arguments, smooth)?;
-    let [x, y, _] = placing.offset();
-    let major = if *x < Rational::ZERO { -x } else { x.clone() };
-    let torus =
-        Primitive::torus(major.clone(), minor).map_err(|error| match error.dimension() {
-            Dimension::Major => SpannedError::input(
-                arguments.span.clone(),
-                "a circle centred on the axis of `rotate_extrude`",
-                "a circle clear of the axis, which makes a torus",
-            ),
-            _ => SpannedError::input(
-                arguments.span.clone(),
-                format!(
-                    "a circle that reaches the axis of `rotate_extrude`, {} from its centre",
-                    show(&major)
-                ),
-                "a circle clear of the axis, which makes a torus",
-            ),
-        })?;
-    Ok(Some(MovedPrimitive::new(torus, shift_z(y.clone()))))
+    let torus = checked(Primitive::torus(x.clone(), minor), &arguments.span)?;
+    Ok(Some(Some(MovedPrimitive::new(torus, shift_z(y.clone())))))
 }

@@ -119,8 +119,8 @@ fn what_has_no_size_adds_nothing() {
 }
 
 #[test]
-fn small_numbers_of_sides_are_polygons_unless_told() {
-    for sides in ["0.1", "3", "16"] {
+fn small_numbers_of_sides_are_polygons() {
+    for sides in ["3", "12"] {
         let text = format!("sphere($fn = {sides}, r = 5);");
         assert!(read_text(&text, Format::Csg).is_err());
         let options = ReadOptions {
@@ -132,9 +132,97 @@ fn small_numbers_of_sides_are_polygons_unless_told() {
     let ring = "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(r = 1); }";
     let polygonal = format!("rotate_extrude($fn = 8) {{ {ring} }}");
     assert!(read_text(&polygonal, Format::Csg).is_err());
-    for sides in ["0", "17", "16.5", "-3"] {
+    for sides in ["0", "13", "16.5", "-3"] {
         csg(&format!("sphere($fn = {sides}, r = 5);"));
     }
+    // A square on its corner, a pyramid, and one on its apex.
+    let post = csg("cylinder($fn = 4, h = 2, r1 = 3, r2 = 3, center = true);");
+    assert_same_points(&post, |[x, y, z]| {
+        x.abs() + y.abs() <= 3.0 && z.abs() <= 1.0
+    });
+    let pyramid = csg("cylinder($fn = 4, h = 3, r1 = 3, r2 = 0, center = false);");
+    assert_same_points(&pyramid, |[x, y, z]| {
+        x.abs() + y.abs() <= 3.0 - z && z >= 0.0
+    });
+    let funnel = csg("cylinder($fn = 4, h = 3, r1 = 0, r2 = 3, center = false);");
+    assert_same_points(&funnel, |[x, y, z]| x.abs() + y.abs() <= z && z <= 3.0);
+}
+
+#[test]
+fn polygons_become_prisms() {
+    let notched =
+        "polygon(points = [[0,0],[4,0],[4,4],[2,1],[0,4]], paths = undef, convexity = 1);";
+    let is_inside = |x: f64, y: f64| {
+        (0.0..=4.0).contains(&x) && y >= 0.0 && y <= 4.0 - 1.5 * (2.0 - (x - 2.0).abs())
+    };
+    let text = format!("linear_extrude(height = 2, center = true) {{ {notched} }}");
+    assert_same_points(&csg(&text), |[x, y, z]| z.abs() <= 1.0 && is_inside(x, y));
+    // Moved, mirrored and stretched in the plane, and scaled on the way up.
+    let moved = format!(
+        "linear_extrude(height = 2, scale = [0.5, 0.5]) {{
+           multmatrix([[-2, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ {notched} }} }}"
+    );
+    assert_same_points(&csg(&moved), |[x, y, z]| {
+        let scale = 1.0 - z / 4.0;
+        (0.0..=2.0).contains(&z) && is_inside((x / scale - 1.0) / -2.0, y / scale)
+    });
+    let holed = "linear_extrude(height = 1) polygon(
+        points = [[0,0],[5,0],[5,5],[0,5],[1,1],[1,4],[4,4],[4,1]], paths = [[0,1,2,3],[4,5,6,7]]);";
+    assert_same_points(&csg(holed), |[x, y, z]| {
+        let within = |lo: f64, hi: f64| lo <= x && x <= hi && lo <= y && y <= hi;
+        (0.0..=1.0).contains(&z) && within(0.0, 5.0) && !within(1.0, 4.0)
+    });
+}
+
+#[test]
+fn figures_are_revolved() {
+    let text = "rotate_extrude(angle = 90) { polygon(points = [[1, 0], [4, 0], [4, 2], [2, 3]]); }";
+    assert_same_points(&csg(text), |[x, y, z]| {
+        let r = x.hypot(y);
+        x >= 0.0 && y >= 0.0 && z >= 0.0 && z <= 3.0 * (r - 1.0) && r <= 4.0 && z <= 4.0 - r / 2.0
+    });
+    // What a difference removes may lie beyond the axis.
+    let text = "rotate_extrude() difference() { circle(r = 4);
+        multmatrix([[1,0,0,-9],[0,1,0,-9],[0,0,1,0],[0,0,0,1]]) { square([9, 18]); }
+        square(size = [2, 2], center = true); }";
+    assert_same_points(&csg(text), |[x, y, z]| {
+        let r = x.hypot(y);
+        r.hypot(z) <= 4.0 && !(r <= 1.0 && z.abs() <= 1.0)
+    });
+}
+
+#[test]
+fn hulls_of_discs_have_tangents() {
+    let moved = |x: i32, node: &str| {
+        format!("multmatrix([[1,0,0,{x}],[0,1,0,0],[0,0,1,1],[0,0,0,1]]) {{ {node} }}")
+    };
+    // Two discs: the tangents touch where the sine of their slope is the difference of the radii.
+    let small = moved(5, "cylinder(h = 2, r1 = 1, r2 = 1);");
+    let big = moved(0, "cylinder(h = 2, r1 = 4, r2 = 4);");
+    assert_same_points(&csg(&format!("hull() {{ {small} {big} }}")), |[x, y, z]| {
+        let (sin, cos) = (3.0 / 5.0, 4.0 / 5.0);
+        let beyond = x * sin + y.abs() * cos - 4.0;
+        let along = x * cos - y.abs() * sin;
+        let band = beyond <= 0.0 && (0.0..=4.0).contains(&along);
+        (1.0..=3.0).contains(&z) && (band || x.hypot(y) <= 4.0 || (x - 5.0).hypot(y) <= 1.0)
+    });
+    // A disc and a point in the plane, and a disc that is covered.
+    let drop = "linear_extrude(height = 1) hull() { circle(r = 3); circle(r = 1);
+        multmatrix([[1,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { polygon(points = [[0,0],[-9,0],[-9,0]]);
+        square(size = [0.0000001, 0.0000001]); } }";
+    assert_same_points(&csg(drop), |[x, y, z]| {
+        let cone = 3.0 * x + 4.0 * y.abs() <= 15.0 && 4.0 * x >= 3.0 * y.abs();
+        (0.0..=1.0).contains(&z) && (cone || x.hypot(y) <= 3.0)
+    });
+}
+
+#[test]
+fn uniform_scales_are_applied() {
+    let text = "multmatrix([[0, -2, 0, 1], [-2, 0, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]) {
+        cube(size = [1, 2, 3]); }";
+    assert_same_points(&csg(text), |[x, y, z]| {
+        (-3.0..=1.0).contains(&x) && (-2.0..=0.0).contains(&y) && (0.0..=6.0).contains(&z)
+    });
 }
 
 #[test]

@@ -44,3 +44,54 @@ fn no_children_are_the_empty_solid() {
     assert!(json(r#"{"op":"union","children":[]}"#).is_empty());
     assert!(json(r#"{"op":"difference","children":[]}"#).is_empty());
 }
+
+#[test]
+fn figures_are_read_and_written() {
+    let slot = r#"{"prim":"prism","figure":[[[0,-1],[5,-1,5,0,1],[5,1],[0,1,0,0,1]]],"h":2}"#;
+    let tree = tree(slot, Format::Json);
+    assert_same_points(&tree, |[x, y, z]| {
+        let away = (x - x.clamp(0.0, 5.0)).hypot(y);
+        (0.0..=2.0).contains(&z) && away <= 1.0
+    });
+    for text in [
+        slot,
+        r#"{"prim":"prism","figure":[[[1,0],[3,0],[2,2]]],"h":2,"top":0.5}"#,
+        r#"{"prim":"revolution","figure":[[[1,0],[3,0],[2,2]]],"angle":90}"#,
+        r#"{"prim":"revolution","figure":[[[0,-2,0,0,2],[0,2]]]}"#,
+    ] {
+        let program = parse(
+            "part",
+            text.as_bytes(),
+            Format::Json,
+            &ReadOptions::default(),
+        );
+        let program = program.unwrap();
+        let written = crate::writer::write(&program.builder, program.part, Format::Json);
+        assert_eq!(written.unwrap().trim(), text);
+    }
+    for (text, expected) in [
+        (
+            r#"{"prim":"prism","figure":[[[0,0],[1,0]]],"h":1}"#,
+            "a figure without area",
+        ),
+        (
+            r#"{"prim":"prism","figure":[[[0,0],[1,0,1],[1,1]]],"h":1}"#,
+            "an array of 3",
+        ),
+        (
+            r#"{"prim":"prism","figure":[[[0,0],[1,0,9,9,1],[1,1]]],"h":1}"#,
+            "not on its circle",
+        ),
+        (
+            r#"{"prim":"revolution","figure":[[[-1,0],[1,0],[1,1]]]}"#,
+            "one side of the axis",
+        ),
+        (
+            r#"{"prim":"revolution","figure":[[[1,0],[2,0],[1,1]]],"angle":0}"#,
+            "0 and 360",
+        ),
+    ] {
+        let found = message(text, Format::Json);
+        assert!(found.contains(expected), "{found}");
+    }
+}

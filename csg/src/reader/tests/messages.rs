@@ -58,12 +58,12 @@ fn expressions() {
 
 #[test]
 fn csg_nodes() {
-    assert_snapshot!(csg("hull() { cube(1); }"), @"part:1:1: found the node `hull`, expected a node that can be read (it is not a regularised set operation or a rigid motion)");
+    assert_snapshot!(csg("offset() { cube(1); }"), @"part:1:1: found the node `offset`, expected a node that can be read (it is not a regularised set operation or a rigid motion)");
     assert_snapshot!(csg("group() { cubee(1); }"), @"part:1:11: found the unknown node `cubee`, expected a node that can be read (did you mean `cube`?)");
     assert_snapshot!(csg("translate([1, 0, 0]) cube(1);"), @"part:1:1: found the node `translate`, expected a node that can be read (this is not flattened: write the file with `openscad -o part.csg part.scad`)");
     assert_snapshot!(csg("cube(size = [1, -2, 3]);"), @"part:1:17: found the value -2, expected a size along y of zero or more");
     assert_snapshot!(csg("cube(size = 1, centre = true);"), @"part:1:16: found the unknown argument `centre` of `cube`, expected one of `size`, `center` (did you mean `center`?)");
-    assert_snapshot!(csg("sphere($fn = 5, r = 1);"), @"part:1:14: found the value 5 for `$fn`, which asks for a polygon, expected 0 or more than 16, which is read as a smooth surface (`--smooth` reads every `$fn` as a smooth surface)");
+    assert_snapshot!(csg("sphere($fn = 5, r = 1);"), @"part:1:14: found the value 5 for `$fn`, which asks for facets, expected 0 or more than 12, which is read as a smooth surface (`--smooth` reads every `$fn` as a smooth surface)");
     assert_snapshot!(csg("sphere(r = undef);"), @"part:1:12: found `undef`, expected a value for `r`");
     assert_snapshot!(csg("sphere(r = nan);"), @"part:1:12: found a number that is not finite, expected a number");
     assert_snapshot!(csg("sphere();"), @"part:1:1: found `sphere` without `r`, expected the argument `r`");
@@ -71,15 +71,15 @@ fn csg_nodes() {
     assert_snapshot!(csg("cube(1)"), @"part:1:8: found the end of the file, expected `;` after a primitive");
     assert_snapshot!(csg("}"), @"part:1:1: found `}`, expected a node");
     assert_snapshot!(csg("circle(r = 1);"), @"part:1:1: found the plane figure `circle` outside an extrusion, expected a solid");
-    assert_snapshot!(csg("rotate_extrude() { circle(r = 1); }"), @"part:1:20: found a circle centred on the axis of `rotate_extrude`, expected a circle clear of the axis, which makes a torus");
-    assert_snapshot!(csg("rotate_extrude(angle = 90) { circle(r = 1); }"), @"part:1:24: found the value 90, expected a whole turn of 360");
-    assert_snapshot!(csg("linear_extrude(height = 1) { polygon(points = [[0, 0], [1, 0], [1, 2], [0, 1]]); }"), @"part:1:47: found a list, expected three points with a right angle between sides along x and y: a wedge");
+    assert_snapshot!(csg("rotate_extrude() { circle(r = 1); }"), @"part:1:20: found a wrong length, expected a figure on one side of the axis");
+    assert_snapshot!(csg("rotate_extrude(angle = 0) { circle(r = 1); }"), @"part:1:24: found the value 0, expected an angle greater than 0");
+    assert_snapshot!(csg("linear_extrude(height = 1, scale = [1, 2]) { square(1); }"), @"part:1:36: found a list, expected the same `scale` along x and y: otherwise the sides are not plane");
+    assert_snapshot!(csg("hull() { sphere(r = 1); cube(1); }"), @"part:1:10: found a hull of other shapes, expected a hull of discs and polygons, or of cylinders, prisms and blocks along z of one height");
     assert_snapshot!(csg("linear_extrude(height = 1, twist = 90) { square(1); }"), @"part:1:36: found the value 90, expected `twist` of 0: only straight extrusions are read");
 }
 
 #[test]
 fn csg_matrices() {
-    assert_snapshot!(csg("multmatrix([[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]) { cube(1); }"), @"part:1:12: found a matrix that scales by 2.000000, expected a rigid motion, perhaps mirrored (give the primitives their final sizes in place of a scale)");
     assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:12: found a matrix that changes lengths or angles, expected a rigid motion, perhaps mirrored");
     assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) { cube(1); }"), @"part:1:43: found a list, expected the last row [0, 0, 0, 1] of a rigid motion");
     assert_snapshot!(csg("multmatrix([[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:13: found a list of 3, expected a row of four numbers");
@@ -90,7 +90,7 @@ fn json_values() {
     assert_snapshot!(json(r#"{"prim":"sphere","r":-1}"#), @"part:1:22: found the value -1, expected a radius greater than zero");
     assert_snapshot!(json(r#"{"prim":"block","size":[1,0,2]}"#), @"part:1:27: found the value 0, expected a size along y greater than zero");
     assert_snapshot!(json(r#"{"prim":"sphere","radius":1}"#), @"part:1:18: found the unknown key `radius`, expected one of `prim`, `transform`, `r` (did you mean `r`?)");
-    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus" (did you mean `sphere`?)"#);
+    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution" (did you mean `sphere`?)"#);
     assert_snapshot!(json(r#"{"op":"union"}"#), @"part:1:14: found an object without `children`, expected the key `children`");
     assert_snapshot!(json(r#"{"op":"union","children":{}}"#), @"part:1:26: found an object, expected an array of solids");
     assert_snapshot!(json(r#"{"op":"union","children":[1]}"#), @"part:1:27: found the number `1`, expected a solid: an object with `op` or `prim`");

@@ -45,6 +45,20 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
         }
         Primitive::Sphere { radius } => radial.hypot(z) <= f(radius),
         Primitive::Torus { major, minor } => (radial - f(major)).hypot(z) <= f(minor),
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => {
+            let scale = 1.0 + (f(top) - 1.0) * z / f(height);
+            let at = [x / scale, y / scale];
+            z >= 0.0 && z <= f(height) && scale > 0.0 && is_around(figure, at)
+        }
+        Primitive::Revolution { figure, angle } => {
+            let turned = y.atan2(x).to_degrees().rem_euclid(360.0);
+            let within = angle.as_ref().is_none_or(|a| turned <= f(a.degrees()));
+            within && is_around(figure, [radial, z])
+        }
     }
 }
 
@@ -81,4 +95,30 @@ fn assert_same_points(a: &Tree, b: impl Fn([f64; 3]) -> bool) {
             }
         }
     }
+}
+
+/// Whether the outline of a figure turns around a point, by the sum of its angles. Arcs are taken as
+/// many chords.
+fn is_around(figure: &crate::figure::Figure, [x, y]: [f64; 2]) -> bool {
+    const CHORDS: u32 = 256;
+    let angle = |s: [f64; 2], e: [f64; 2]| {
+        let [s, e] = [s, e].map(|p| [p[0] - x, p[1] - y]);
+        (s[0] * e[1] - s[1] * e[0]).atan2(s[0] * e[0] + s[1] * e[1])
+    };
+    let turned = figure.edges().iter().map(|edge| {
+        let [s, e] = [&edge.start, &edge.end].map(|p| p.each_ref().map(to_f64));
+        let Some(arc) = &edge.arc else {
+            return angle(s, e);
+        };
+        let (c, r) = (arc.centre.each_ref().map(to_f64), to_f64(&arc.radius));
+        let [from, to] = [s, e].map(|p| (p[1] - c[1]).atan2(p[0] - c[0]));
+        let sign = to_f64(&arc.signed_radius()).signum();
+        let by = sign * (sign * (to - from)).rem_euclid(std::f64::consts::TAU);
+        let at = |k: u32| {
+            let turned = from + by * f64::from(k) / f64::from(CHORDS);
+            [c[0] + r * turned.cos(), c[1] + r * turned.sin()]
+        };
+        (0..CHORDS).map(|k| angle(at(k), at(k + 1))).sum()
+    });
+    turned.sum::<f64>() > 1.0
 }

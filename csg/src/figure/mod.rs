@@ -1,0 +1,547 @@
+//! Figures: regions of the plane that line segments and circular arcs bound.
+//!
+//! A figure is the set of its edges, each with the material on its left. Lines and circles have
+//! rational coefficients. The ends of edges are rational, too; an end on a circle may be rounded, as
+//! where an edge ends is decided within the resolution, and where it lies is exact.
+
+mod chain;
+mod convex_hull;
+mod outline;
+mod polygonal;
+mod roots;
+mod scalar;
+
+use premio_kernel::number::rational::{Rational, to_f64};
+
+pub use convex_hull::Disc;
+pub use outline::ContourCorner;
+pub(crate) use scalar::direction;
+
+/// The largest number of edges of a figure.
+pub const MAX_EDGES: usize = 100_000;
+
+/// A point of the plane.
+pub type FigurePoint = [Rational; 2];
+
+/// The sense in which an arc runs around its centre, from its start to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ArcTurn {
+    /// Counterclockwise: the arc bulges away from the material.
+    Counterclockwise,
+    /// Clockwise: the arc bulges into the material.
+    Clockwise,
+}
+
+impl ArcTurn {
+    /// The other sense.
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Counterclockwise => Self::Clockwise,
+            Self::Clockwise => Self::Counterclockwise,
+        }
+    }
+}
+
+/// The circle of an arc, and the sense in which the arc runs around it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct FigureArc {
+    /// The centre.
+    pub centre: FigurePoint,
+    /// The radius.
+    pub radius: Rational,
+    /// The sense.
+    pub turn: ArcTurn,
+}
+
+impl FigureArc {
+    /// The radius, negative if the arc runs clockwise.
+    pub fn signed_radius(&self) -> Rational {
+        match self.turn {
+            ArcTurn::Counterclockwise => self.radius.clone(),
+            ArcTurn::Clockwise => -&self.radius,
+        }
+    }
+
+    /// An arc by its centre and its radius, which is negative if the arc runs clockwise.
+    pub fn from_signed_radius(centre: FigurePoint, radius: Rational) -> Self {
+        let is_clockwise = radius < Rational::ZERO;
+        let (radius, turn) = match is_clockwise {
+            true => (-radius, ArcTurn::Clockwise),
+            false => (radius, ArcTurn::Counterclockwise),
+        };
+        Self {
+            centre,
+            radius,
+            turn,
+        }
+    }
+}
+
+/// An edge of a figure, with the material on its left.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct FigureEdge {
+    /// The first end.
+    pub start: FigurePoint,
+    /// The last end.
+    pub end: FigurePoint,
+    /// The circle of an arc; `None` for a line segment.
+    pub arc: Option<FigureArc>,
+}
+
+/// Why contours bound no figure.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// There are too many edges.
+    #[error("a figure of {count} edges; the limit is {MAX_EDGES}")]
+    TooManyEdges {
+        /// The number of edges.
+        count: usize,
+    },
+    /// An arc crosses another edge.
+    #[error("an arc crosses another edge near ({x}, {y})", x = at[0], y = at[1])]
+    ArcCrosses {
+        /// The rounded place.
+        at: [String; 2],
+    },
+    /// An end of an arc is not on its circle.
+    #[error("an arc from a point that is not on its circle")]
+    OffCircle,
+    /// A factor or matrix does not map circles to circles.
+    #[error("a map that makes ellipses of arcs")]
+    Elliptic,
+    /// An arc crosses the axis of a revolution, and its centre is not on the axis.
+    #[error("an arc that crosses the axis, with its centre elsewhere")]
+    ArcAcrossAxis,
+    /// The region is empty.
+    #[error("a figure without area")]
+    Empty,
+}
+
+/// A linear map of the plane and an offset.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlaneMap {
+    /// The matrix by rows.
+    pub matrix: [[Rational; 2]; 2],
+    /// The offset.
+    pub offset: FigurePoint,
+}
+
+impl PlaneMap {
+    /// The map that leaves every point where it is.
+    pub fn identity() -> Self {
+        let (zero, one) = (|| Rational::ZERO, || Rational::ONE);
+        Self {
+            matrix: [[one(), zero()], [zero(), one()]],
+            offset: [zero(), zero()],
+        }
+    }
+
+    /// The image of a point.
+    pub fn apply(&self, point: &FigurePoint) -> FigurePoint {
+        std::array::from_fn(|i| {
+            let [a, b] = &self.matrix[i];
+            a * &point[0] + b * &point[1] + &self.offset[i]
+        })
+    }
+
+    /// This map and then another one.
+    pub fn then(&self, outer: &Self) -> Self {
+        let entry = |i: usize, j: usize| {
+            &outer.matrix[i][0] * &self.matrix[0][j] + &outer.matrix[i][1] * &self.matrix[1][j]
+        };
+        Self {
+            matrix: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
+            offset: outer.apply(&self.offset),
+        }
+    }
+
+    /// Whether it leaves every point where it is.
+    pub fn is_identity(&self) -> bool {
+        *self == Self::identity()
+    }
+
+    /// Whether it keeps all lengths.
+    pub fn is_rigid(&self) -> bool {
+        self.factor().is_some_and(|factor| factor.is_one())
+    }
+
+    fn determinant(&self) -> Rational {
+        let [[a, b], [c, d]] = &self.matrix;
+        a * d - b * c
+    }
+
+    /// The factor of all lengths; `None` if it depends on the direction, or has no exact value.
+    fn factor(&self) -> Option<Rational> {
+        let [[a, b], [c, d]] = &self.matrix;
+        let alike = (a == d && *b == -c) || (*a == -d && b == c);
+        let square = a * a + b * b;
+        alike
+            .then(|| premio_kernel::number::rational::exact_sqrt(&square))
+            .flatten()
+    }
+}
+
+/// A bounded region of the plane.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Figure {
+    pub(crate) edges: Vec<FigureEdge>,
+    /// The index of the first edge of each contour.
+    pub(crate) contours: Vec<usize>,
+}
+
+impl Figure {
+    /// Its edges, contour after contour.
+    pub fn edges(&self) -> &[FigureEdge] {
+        &self.edges
+    }
+
+    /// Its contours. Each is closed, with the material on the left.
+    pub fn contours(&self) -> impl Iterator<Item = &[FigureEdge]> {
+        let ends = self.contours.iter().skip(1).copied();
+        let ends = ends.chain([self.edges.len()]);
+        let starts = self.contours.iter().copied();
+        starts.zip(ends).map(|(from, to)| &self.edges[from..to])
+    }
+
+    /// Whether all edges are line segments.
+    pub fn is_polygon(&self) -> bool {
+        self.edges.iter().all(|edge| edge.arc.is_none())
+    }
+
+    /// The rectangle with a corner at the origin.
+    ///
+    /// # Errors
+    /// It has no area.
+    pub fn rectangle(size: &[Rational; 2]) -> Result<Self, FigureError> {
+        let zero = || Rational::ZERO;
+        let [x, y] = size;
+        let corners = [
+            [zero(), zero()],
+            [x.clone(), zero()],
+            [x.clone(), y.clone()],
+            [zero(), y.clone()],
+        ];
+        Self::polygon(&[corners.to_vec()])
+    }
+
+    /// The disc about the origin.
+    ///
+    /// # Errors
+    /// The radius is not greater than zero.
+    pub fn disc(radius: &Rational) -> Result<Self, FigureError> {
+        if *radius <= Rational::ZERO {
+            return Err(FigureError::Empty);
+        }
+        let zero = || Rational::ZERO;
+        let [right, left] = [[radius.clone(), zero()], [-radius, zero()]];
+        let edge = |start: &FigurePoint, end: &FigurePoint| FigureEdge {
+            start: start.clone(),
+            end: end.clone(),
+            arc: Some(FigureArc {
+                centre: [zero(), zero()],
+                radius: radius.clone(),
+                turn: ArcTurn::Counterclockwise,
+            }),
+        };
+        Ok(Self {
+            edges: vec![edge(&right, &left), edge(&left, &right)],
+            contours: vec![0],
+        })
+    }
+
+    /// The image under a map.
+    ///
+    /// # Errors
+    /// The map makes the figure flat, or ellipses of its arcs.
+    pub fn mapped(&self, map: &PlaneMap) -> Result<Self, FigureError> {
+        let determinant = map.determinant();
+        if determinant.is_zero() {
+            return Err(FigureError::Empty);
+        }
+        let factor = match self.is_polygon() {
+            true => Rational::ONE,
+            false => map.factor().ok_or(FigureError::Elliptic)?,
+        };
+        let is_mirrored = determinant < Rational::ZERO;
+        let image = |edge: &FigureEdge| {
+            let [start, end] = [&edge.start, &edge.end].map(|p| map.apply(p));
+            // A mirrored edge runs backwards, with the material on its left. An arc that is both
+            // mirrored and reversed keeps its sense.
+            let [start, end] = match is_mirrored {
+                true => [end, start],
+                false => [start, end],
+            };
+            let arc = edge.arc.as_ref().map(|arc| FigureArc {
+                centre: map.apply(&arc.centre),
+                radius: &arc.radius * &factor,
+                turn: arc.turn,
+            });
+            FigureEdge { start, end, arc }
+        };
+        let mut edges = Vec::with_capacity(self.edges.len());
+        for contour in self.contours() {
+            let images = contour.iter().map(image);
+            match is_mirrored {
+                true => edges.extend(images.rev()),
+                false => edges.extend(images),
+            }
+        }
+        Ok(Self {
+            edges,
+            contours: self.contours.clone(),
+        })
+    }
+
+    /// Whether no point has x > 0.
+    pub(crate) fn is_left_of_axis(&self) -> bool {
+        self.bounds()[1][0] <= 0.0
+    }
+
+    /// Whether it has points on both sides of the second axis, by more than rounding.
+    pub(crate) fn crosses_axis(&self) -> bool {
+        let [lo, hi] = self.bounds();
+        let slack = 8.0 * f64::EPSILON * (hi[0] - lo[0]);
+        lo[0] < -slack && hi[0] > slack
+    }
+
+    /// The mirror image under `x -> -x`.
+    pub(crate) fn mirrored_x(&self) -> Self {
+        let map = PlaneMap {
+            matrix: [[-1, 0], [0, 1]].map(|row| row.map(Rational::from)),
+            ..PlaneMap::identity()
+        };
+        self.mapped(&map).unwrap_or_else(|_| self.clone())
+    }
+
+    /// The part with x >= 0; `None` if there is none.
+    ///
+    /// # Errors
+    /// An arc crosses the axis whose centre is not on it.
+    pub(crate) fn right_of_axis(&self) -> Result<Option<Self>, FigureError> {
+        let [lo, hi] = self.bounds();
+        if lo[0] >= 0.0
+            || self
+                .edges
+                .iter()
+                .all(|e| e.start[0] >= Rational::ZERO && e.arc.is_none())
+        {
+            return Ok(Some(self.clone()));
+        }
+        if hi[0] <= 0.0 {
+            return Ok(None);
+        }
+        let contours = self.contours().map(right_part);
+        let contours: Vec<Vec<ContourCorner>> = contours.collect::<Result<_, _>>()?;
+        match Self::from_contours(&contours) {
+            Ok(figure) => Ok(Some(figure)),
+            Err(FigureError::Empty) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The image with all lengths multiplied by `factor`, which must be greater than zero.
+    pub(crate) fn scaled(&self, factor: &Rational) -> Self {
+        let by = |p: &FigurePoint| [&p[0] * factor, &p[1] * factor];
+        let image = |edge: &FigureEdge| FigureEdge {
+            start: by(&edge.start),
+            end: by(&edge.end),
+            arc: edge.arc.as_ref().map(|arc| FigureArc {
+                centre: by(&arc.centre),
+                radius: &arc.radius * factor,
+                turn: arc.turn,
+            }),
+        };
+        Self {
+            edges: self.edges.iter().map(image).collect(),
+            contours: self.contours.clone(),
+        }
+    }
+
+    /// The mirror image under `y -> -y`.
+    pub(crate) fn mirrored_y(&self) -> Self {
+        let flip = |p: &FigurePoint| [p[0].clone(), -&p[1]];
+        let image = |edge: &FigureEdge| FigureEdge {
+            start: flip(&edge.end),
+            end: flip(&edge.start),
+            arc: edge.arc.as_ref().map(|arc| FigureArc {
+                centre: flip(&arc.centre),
+                ..arc.clone()
+            }),
+        };
+        let mut edges = Vec::with_capacity(self.edges.len());
+        for contour in self.contours() {
+            edges.extend(contour.iter().rev().map(image));
+        }
+        Self {
+            edges,
+            contours: self.contours.clone(),
+        }
+    }
+
+    /// Its area, in f64.
+    pub fn area(&self) -> f64 {
+        self.edges.iter().map(FigureEdge::area).sum()
+    }
+
+    /// The least and the greatest corner of its bounding box, in f64.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        self.edges.iter().fold(none, |[lo, hi], edge| {
+            let [from, to] = edge.bounds();
+            [
+                [lo[0].min(from[0]), lo[1].min(from[1])],
+                [hi[0].max(to[0]), hi[1].max(to[1])],
+            ]
+        })
+    }
+
+    /// Its numbers: the coordinates of all ends and centres, and all radii.
+    pub(crate) fn lengths(&self) -> impl Iterator<Item = &Rational> {
+        self.edges.iter().flat_map(|edge| {
+            let arc = edge.arc.iter();
+            let arc = arc.flat_map(|arc| arc.centre.iter().chain([&arc.radius]));
+            edge.start.iter().chain(arc)
+        })
+    }
+}
+
+/// The corners of a contour clipped to x >= 0 (Sutherland and Hodgman 1974). Segments along the
+/// axis may overlap; the even-odd rule cancels them.
+fn right_part(contour: &[FigureEdge]) -> Result<Vec<ContourCorner>, FigureError> {
+    let is_right = |p: &FigurePoint| p[0] >= Rational::ZERO;
+    let mut corners = Vec::new();
+    for edge in contour {
+        let [s, e] = [&edge.start, &edge.end];
+        let kept = |point: &FigurePoint, arc: &Option<FigureArc>| ContourCorner {
+            point: point.clone(),
+            arc: arc.clone(),
+        };
+        if let Some(arc) = &edge.arc {
+            corners.extend(right_arc(edge, arc)?);
+            continue;
+        }
+        if is_right(s) {
+            corners.push(kept(s, &None));
+        }
+        if is_right(s) != is_right(e) {
+            let t = &s[0] / (&s[0] - &e[0]);
+            let y = &s[1] + t * (&e[1] - &s[1]);
+            corners.push(kept(&[Rational::ZERO, y], &None));
+        }
+    }
+    Ok(corners)
+}
+
+/// The corners of an arc clipped to x >= 0: an arc on one side of the axis, or with its centre and
+/// its ends on it or across it.
+fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, FigureError> {
+    let corner = |point: &FigurePoint, arc: Option<FigureArc>| ContourCorner {
+        point: point.clone(),
+        arc,
+    };
+    let [lo, hi] = edge.bounds();
+    let slack = 8.0 * f64::EPSILON * to_f64(&arc.radius);
+    if lo[0] >= -slack {
+        return Ok(vec![corner(&edge.start, Some(arc.clone()))]);
+    }
+    if hi[0] <= slack {
+        return Ok(Vec::new());
+    }
+    if !arc.centre[0].is_zero() {
+        return Err(FigureError::ArcAcrossAxis);
+    }
+    // The poles, in the order in which the arc passes them on the right.
+    let pole = |up: bool| {
+        let y = if up {
+            &arc.centre[1] + &arc.radius
+        } else {
+            &arc.centre[1] - &arc.radius
+        };
+        [Rational::ZERO, y]
+    };
+    let is_up = arc.turn == ArcTurn::Counterclockwise;
+    let [first, last] = [pole(!is_up), pole(is_up)];
+    let is_right = |p: &FigurePoint| p[0] > Rational::ZERO;
+    Ok(match [is_right(&edge.start), is_right(&edge.end)] {
+        [true, true] => vec![
+            corner(&edge.start, Some(arc.clone())),
+            corner(&last, None),
+            corner(&first, Some(arc.clone())),
+        ],
+        [true, false] => vec![corner(&edge.start, Some(arc.clone())), corner(&last, None)],
+        [false, true] => vec![corner(&first, Some(arc.clone()))],
+        [false, false] => vec![corner(&first, Some(arc.clone())), corner(&last, None)],
+    })
+}
+
+impl FigureEdge {
+    /// A line segment.
+    pub fn line(start: FigurePoint, end: FigurePoint) -> Self {
+        Self {
+            start,
+            end,
+            arc: None,
+        }
+    }
+
+    /// The same edge from its end to its start.
+    pub fn reversed(&self) -> Self {
+        Self {
+            start: self.end.clone(),
+            end: self.start.clone(),
+            arc: self.arc.as_ref().map(|arc| FigureArc {
+                turn: arc.turn.reversed(),
+                ..arc.clone()
+            }),
+        }
+    }
+
+    /// The angle that an arc turns by, positive if counterclockwise.
+    fn turned(&self, arc: &FigureArc) -> f64 {
+        let [s, e] = [&self.start, &self.end];
+        let [s, e] = [s, e].map(|p| [0, 1].map(|i| to_f64(&(&p[i] - &arc.centre[i]))));
+        let angle = (s[0] * e[1] - s[1] * e[0]).atan2(s[0] * e[0] + s[1] * e[1]);
+        let full = std::f64::consts::TAU;
+        match arc.turn {
+            ArcTurn::Counterclockwise => angle.rem_euclid(full),
+            ArcTurn::Clockwise => -(-angle).rem_euclid(full),
+        }
+    }
+
+    /// The area between the edge and the origin.
+    fn area(&self) -> f64 {
+        let [s, e] = [&self.start, &self.end].map(|p| p.each_ref().map(to_f64));
+        let chord = 0.5 * (s[0] * e[1] - s[1] * e[0]);
+        let segment = self.arc.as_ref().map_or(0.0, |arc| {
+            let (angle, r) = (self.turned(arc), to_f64(&arc.radius));
+            0.5 * r * r * (angle - angle.sin())
+        });
+        chord + segment
+    }
+
+    /// The least and the greatest corner of its bounding box.
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
+        let [s, e] = [&self.start, &self.end].map(|p| p.each_ref().map(to_f64));
+        let mut lo = [s[0].min(e[0]), s[1].min(e[1])];
+        let mut hi = [s[0].max(e[0]), s[1].max(e[1])];
+        if let Some(arc) = &self.arc {
+            let (c, r) = (arc.centre.each_ref().map(to_f64), to_f64(&arc.radius));
+            for axis in 0..2 {
+                for sign in [-1.0, 1.0] {
+                    let mut d = [0.0, 0.0];
+                    d[axis] = sign;
+                    if scalar::is_in_sector(d, s, e, c, arc.turn) {
+                        let at = c[axis] + sign * r;
+                        lo[axis] = lo[axis].min(at);
+                        hi[axis] = hi[axis].max(at);
+                    }
+                }
+            }
+        }
+        [lo, hi]
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -156,7 +156,8 @@ pub(super) fn figure(contours: Vec<Vec<FigureEdge>>) -> Figure {
     let homes = homes(&contours);
     let is_simple = |&[a, b]: &[usize; 2]| {
         let own = homes[a].contour == homes[b].contour && !homes[a].is_next_to(&homes[b]);
-        !lines[a].crosses(&lines[b]) && !(own && lines[a].touches(&lines[b]))
+        let [a, b] = [&lines[a], &lines[b]];
+        !(a.crosses(b) || own && a.touches(b))
     };
     if !pairs.iter().all(is_simple) {
         return split(&lines, &pairs);

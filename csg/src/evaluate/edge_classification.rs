@@ -70,6 +70,19 @@ struct OpenWall<N: Float = f64> {
     away: Option<Vector3<N>>,
 }
 
+/// Joins walls that continue each other on one carrier: a curve along both passes their common end.
+fn join_walls<N: Float>(walls: &mut Vec<OpenWall<N>>) {
+    let mut joined: Vec<OpenWall<N>> = Vec::with_capacity(walls.len());
+    for wall in walls.drain(..) {
+        let is_same = |w: &&mut OpenWall<N>| w.carrier == wall.carrier && w.side == wall.side;
+        match joined.iter_mut().find(is_same) {
+            Some(known) => known.away = None,
+            None => joined.push(wall),
+        }
+    }
+    *walls = joined;
+}
+
 impl<N: Float> OpenWall<N> {
     /// Whether a half sheet is part of the wall.
     fn has(&self, sheet: &HalfSheet<N>) -> bool {
@@ -295,6 +308,7 @@ impl<N: Float> Classifier<'_, N> {
                 away: wall.away,
             })
         }));
+        join_walls(&mut near.walls);
         let is_near = look.is_inside || !near.walls.is_empty();
         SolidLook {
             near: is_near.then_some(near),

@@ -204,8 +204,15 @@ impl<N: Float> SectionEdge<N> {
         let Some(circle) = &self.circle else {
             return usize::from(chord);
         };
-        // Between the chord and the arc the parity changes.
+        // Between the chord and the arc the parity changes. A point on the chord is taken as beyond
+        // it along the first axis, or along the second one if the chord runs along the first.
         let side = cross(difference(e, s), difference(p, s));
+        let [along, up] = difference(e, s);
+        let side = match side.is_exactly(N::ZERO) {
+            true if up.is_exactly(N::ZERO) => along,
+            true => -up,
+            false => side,
+        };
         let is_beyond = match circle.turn {
             ArcTurn::Counterclockwise => side.is_below_zero(),
             ArcTurn::Clockwise => side.is_above_zero(),

@@ -223,6 +223,12 @@ impl RoundedEdge {
         };
         // Between the chord and the arc the parity changes.
         let side = (e[0] - s[0]) * (p[1] - s[1]) - (e[1] - s[1]) * (p[0] - s[0]);
+        // A point on the chord is taken as beyond it along x, or above it.
+        let side = match (side == 0.0, e[1] == s[1]) {
+            (true, true) => e[0] - s[0],
+            (true, false) => s[1] - e[1],
+            _ => side,
+        };
         let is_beyond = (side < 0.0) == (turn == ArcTurn::Counterclockwise);
         let within = (p[0] - c[0]).hypot(p[1] - c[1]) < r;
         chord != (is_beyond && within)

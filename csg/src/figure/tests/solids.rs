@@ -295,6 +295,28 @@ fn sections_combine_with_other_solids() {
 }
 
 #[test]
+fn a_disc_is_a_cylinder() {
+    // Pieces of curves have their middles on the chord of the disc's arcs, and where these join.
+    let disc = || Primitive::prism(Figure::disc(&n(2)).unwrap(), n(2)).unwrap();
+    let cylinder = || Primitive::cylinder(n(2), n(2)).unwrap();
+    let triangle = Figure::polygon(&[points(&[[9, 8], [9, 9], [2, 0]])]).unwrap();
+    let half = Rational::ONE / n(2);
+    let leaning = Primitive::scaled_prism(triangle, n(4), half).unwrap();
+    let [a, b] = [disc(), cylinder()].map(|round| {
+        let tree = tree_of(|builder| {
+            let round = builder.primitive(round);
+            let round = builder.moved(round, Transform::shift([n(6), n(4), n(0)]));
+            let other = builder.primitive(leaning.clone());
+            builder.operation(Operation::Difference, &[round, other])
+        });
+        let known = evaluated(&tree);
+        (known.mass().volume, known.brep.topology.census().cells)
+    });
+    assert_eq!(a.1, b.1);
+    assert!((a.0 - b.0).abs() < 1e-10);
+}
+
+#[test]
 fn a_mirror_image_is_mirrored() {
     let shapes = [
         prism(&[&[[0, 0], [6, 0], [6, 1], [1, 1], [1, 4], [0, 4]]], 2),

@@ -3,6 +3,7 @@ pub mod builder;
 pub mod evaluate;
 pub mod figure;
 pub mod object_model;
+pub mod polyhedron;
 pub mod primitive;
 pub mod ray_casting;
 pub mod reader;

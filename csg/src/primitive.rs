@@ -7,6 +7,7 @@ use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, to_f64};
 
 use crate::figure::{Figure, FigureEdge};
+use crate::polyhedron::Polyhedron;
 
 /// A primitive solid. Lengths are exact; the constructors check them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,6 +67,11 @@ pub enum Primitive {
         figure: Arc<Figure>,
         /// The angle from the half plane y = 0, x >= 0; `None` for a whole turn.
         angle: Option<RevolutionAngle>,
+    },
+    /// A polyhedron.
+    Polyhedron {
+        /// Its corners and faces.
+        polyhedron: Arc<Polyhedron>,
     },
 }
 
@@ -350,6 +356,7 @@ impl Primitive {
                 top,
             } => figure.lengths().chain([height, top]).collect(),
             Self::Revolution { figure, .. } => figure.lengths().collect(),
+            Self::Polyhedron { polyhedron } => polyhedron.points().iter().flatten().collect(),
             Self::Block { size } | Self::Wedge { size } => size.iter().collect(),
             Self::Cylinder { radius, height } => vec![radius, height],
             Self::Frustum { base, top, height } => vec![base, top, height],
@@ -395,6 +402,9 @@ impl Primitive {
                 figure: Arc::new(figure.scaled(factor)),
                 angle: angle.clone(),
             },
+            Self::Polyhedron { polyhedron } => Self::Polyhedron {
+                polyhedron: Arc::new(polyhedron.scaled(factor)),
+            },
         }
     }
 
@@ -420,6 +430,7 @@ impl Primitive {
             | Self::Sphere { .. }
             | Self::Torus { .. }
             | Self::Prism { .. }
+            | Self::Polyhedron { .. }
             | Self::Revolution { angle: None, .. } => Motion::identity(),
         };
         let primitive = match self {
@@ -431,6 +442,9 @@ impl Primitive {
                 figure: Arc::new(figure.mirrored_y()),
                 height: height.clone(),
                 top: top.clone(),
+            },
+            Self::Polyhedron { polyhedron } => Self::Polyhedron {
+                polyhedron: Arc::new(polyhedron.mirrored_y()),
             },
             other => other.clone(),
         };

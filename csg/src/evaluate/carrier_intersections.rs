@@ -124,7 +124,7 @@ impl<N: Float> Arrangement<N> {
         let is_new = |i: &usize| {
             let Aabb { min, max } = solids.all[*i].bounds;
             // The walls of sections may end differently on the same carriers.
-            solids.all[*i].section.is_some()
+            solids.all[*i].region.is_some()
                 || known.insert((&self.sides[*i], [min, max].map(|p| p.map(f64::to_bits))))
         };
         let distinct: Vec<usize> = (0..solids.all.len()).filter(is_new).collect();

@@ -290,13 +290,13 @@ impl<N: Float> Classifier<'_, N> {
             };
             return SolidLook { near: None, margin };
         }
-        let Some(section) = &solid.section else {
+        let Some(region) = &solid.region else {
             let (near, margin) = (Some(near), inside);
             return SolidLook { near, margin };
         };
         let is_own = |side: usize| carriers.binary_search(&sides[side].carrier).is_ok();
         let tolerance = N::from_f64(WALL_TOLERANCE) * self.predicates.resolution::<N>();
-        let look = section.look(p, is_own, tolerance);
+        let look = region.look(p, is_own, tolerance);
         near.walls.extend(look.walls.iter().filter_map(|wall| {
             let CarrierSide { carrier, sense } = sides[wall.side];
             Some(OpenWall {

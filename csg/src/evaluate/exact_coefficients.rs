@@ -51,6 +51,11 @@ fn in_own_frame(primitive: &Primitive, side: usize) -> Coefficients<Rational> {
             None if side == walls::count(primitive) => disc(&Rational::ZERO, false),
             None => disc(height, true),
         },
+        Primitive::Polyhedron { polyhedron } => Coefficients {
+            point: polyhedron.corners(side).next().cloned().unwrap_or_default(),
+            direction: polyhedron.normal(side),
+            ..plane()
+        },
         Primitive::Revolution { .. } => match walls::wall(primitive, side) {
             Some(wall) => wall.coefficients,
             None => {

@@ -104,16 +104,16 @@ impl<N: Float> CloseCallFilter<'_, N> {
             EndRule::All => ends.iter().all(|holds| holds[i]),
             EndRule::Any => ends.iter().any(|holds| holds[i]),
         });
-        let Some(section) = &solid.section else {
+        let Some(region) = &solid.region else {
             return Some(within);
         };
         let step = N::from_f64(STEP) * self.predicates.resolution::<N>();
-        let look = section.look(&at.point, is_own, N::HALF * step);
+        let look = region.look(&at.point, is_own, N::HALF * step);
         if look.margin.is_at_most(N::TWO * step) || look.walls.iter().any(|w| w.away.is_some()) {
             return None;
         }
         let places = [-step, step].map(|away| at.point + at.normal * away);
-        let inside = places.map(|p| section.contains(&p));
+        let inside = places.map(|p| region.contains(&p));
         Some([0, 1].map(|i| within[i] && inside[i]))
     }
 

@@ -1,8 +1,11 @@
 //! Represents every primitive as an intersection of half spaces, or as walls around a section and
 //! the half spaces of its ends.
 
+use super::facets::Facets;
+use super::region::WalledRegion;
 use super::section::{Section, SectionMap};
 use super::walls::{self, Wall, WallKind};
+use crate::polyhedron::Polyhedron;
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, PlacedPrimitive, Tree};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -32,8 +35,8 @@ pub(super) struct Solid<N: Float> {
     pub leaf: NodeId,
     /// Its walls, and then its half spaces.
     pub sides: Vec<HalfSpace<N>>,
-    /// The section that the walls bound, of a prism or a revolution.
-    pub section: Option<Section<N>>,
+    /// The region that the walls bound, of a prism, a revolution or a polyhedron.
+    pub region: Option<WalledRegion<N>>,
     /// How the half spaces are combined.
     pub ends: EndRule,
     /// Its bounding box.
@@ -81,7 +84,7 @@ impl<N: Float> Solid<N> {
 
     /// The half spaces that are not walls, with their indices among the sides.
     pub fn half_spaces(&self) -> impl Iterator<Item = (usize, &HalfSpace<N>)> + Clone {
-        let walls = self.section.as_ref().map_or(0, |section| section.walls);
+        let walls = self.region.as_ref().map_or(0, WalledRegion::walls);
         self.sides.iter().enumerate().skip(walls)
     }
 
@@ -92,8 +95,8 @@ impl<N: Float> Solid<N> {
             EndRule::All => ends.fold(N::NEG_INFINITY, N::max),
             EndRule::Any => ends.fold(N::INFINITY, N::min),
         };
-        match &self.section {
-            Some(section) => ends.max(section.level(p, limit)),
+        match &self.region {
+            Some(region) => ends.max(region.level(p, limit)),
             None => ends,
         }
     }
@@ -287,6 +290,7 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
         Primitive::Prism { .. } | Primitive::Revolution { .. } => {
             return sectioned(leaf, &pose);
         }
+        Primitive::Polyhedron { polyhedron } => return faceted(leaf, &pose, polyhedron),
     }
     let bounds = match &placed.primitive {
         // The wall of a cone has the box of the whole primitive.
@@ -298,7 +302,7 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
     Solid {
         leaf,
         sides,
-        section: None,
+        region: None,
         ends: EndRule::All,
         bounds,
         index: None,
@@ -323,7 +327,7 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
             return Solid {
                 leaf,
                 sides: Vec::new(),
-                section: None,
+                region: None,
                 ends: EndRule::All,
                 bounds: Aabb::EMPTY,
                 index: None,
@@ -387,9 +391,36 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
         leaf,
         index: index(&sides),
         sides,
-        section: Some(section),
+        region: Some(WalledRegion::Section(section)),
         ends,
         bounds,
+    }
+}
+
+/// A polyhedron.
+fn faceted<N: Float>(
+    leaf: NodeId,
+    pose: &Pose<'_, N>,
+    polyhedron: &Polyhedron,
+) -> Solid<N> {
+    let facets = Facets::new(polyhedron, pose.turn, pose.point(zero()));
+    let side = |facet: usize| {
+        let [lo, hi] = facets.bounds(facet);
+        let normal = Vector3::from(polyhedron.normal(facet).each_ref().map(N::nearest));
+        let through = polyhedron.corners(facet).next();
+        HalfSpace {
+            surface: pose.plane(through.cloned().unwrap_or_default(), normal.unit()),
+            bounds: pose.boxed(lo, hi),
+        }
+    };
+    let sides: Vec<HalfSpace<N>> = (0..facets.count()).map(side).collect();
+    Solid {
+        leaf,
+        bounds: sides.iter().fold(Aabb::EMPTY, |b, s| b.hull(&s.bounds)),
+        index: index(&sides),
+        sides,
+        region: Some(WalledRegion::Facets(facets)),
+        ends: EndRule::All,
     }
 }
 

@@ -101,7 +101,7 @@ pub(super) struct SectionLook<N: Float> {
 }
 
 /// The distance up to which the distance of a wall is determined, relative to the tolerance.
-const MARGIN: f64 = 8.0;
+pub(super) const MARGIN: f64 = 8.0;
 
 /// The most entries of slabs, relative to the number of edges.
 const MOST_PER_EDGE: usize = 8;

@@ -69,7 +69,7 @@ fn thickness(primitive: &Primitive) -> f64 {
         Primitive::Sphere { radius } => 2.0 * to_f64(radius),
         Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
         Primitive::Prism { height, .. } => to_f64(height),
-        Primitive::Revolution { .. } => f64::INFINITY,
+        Primitive::Revolution { .. } | Primitive::Polyhedron { .. } => f64::INFINITY,
     }
 }
 
@@ -87,9 +87,10 @@ fn middle(placed: &PlacedPrimitive) -> [f64; 3] {
             [nothing(), nothing(), half(height)]
         }
         Primitive::Prism { height, .. } => [nothing(), nothing(), half(height)],
-        Primitive::Sphere { .. } | Primitive::Torus { .. } | Primitive::Revolution { .. } => {
-            [nothing(), nothing(), nothing()]
-        }
+        Primitive::Sphere { .. }
+        | Primitive::Torus { .. }
+        | Primitive::Revolution { .. }
+        | Primitive::Polyhedron { .. } => [nothing(), nothing(), nothing()],
     };
     placed.motion.apply_point(&point).each_ref().map(to_f64)
 }

@@ -159,6 +159,10 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
             vec![Carrier::new(Kind::Torus, zero, z, [major, minor])]
         }
         Shape::Section(section) => section_carriers(section),
+        Shape::Facets(facets) => {
+            let planes = facets.planes();
+            planes.map(|(at, normal)| Carrier::plane(at, normal)).collect()
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! against it.
 
 mod crossing;
+mod facets;
 mod polynomial;
 mod section;
 mod shape;

@@ -1,6 +1,7 @@
 //! The primitives in their own frames: point membership and intersection with a line.
 
 use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
+use super::facets::FacetShape;
 use super::section::SectionShape;
 use crate::primitive::Primitive;
 use nalgebra::Vector3;
@@ -25,6 +26,8 @@ pub(super) enum Shape {
     },
     /// A prism or a revolution.
     Section(SectionShape),
+    /// A polyhedron.
+    Facets(FacetShape),
 }
 
 /// Clips `range` to the part where `a + b t <= 0`; returns false if it is empty.
@@ -60,6 +63,7 @@ impl Shape {
             Primitive::Revolution { figure, angle } => {
                 Self::Section(SectionShape::revolution(figure, angle.as_ref()))
             }
+            Primitive::Polyhedron { polyhedron } => Self::Facets(FacetShape::new(polyhedron)),
         }
     }
 
@@ -81,6 +85,7 @@ impl Shape {
             }
             &Self::Sphere(r) => [[-r; 3], [r; 3]],
             Self::Section(section) => section.bounds(),
+            Self::Facets(facets) => facets.bounds(),
             &Self::Torus { major, minor } => {
                 let r = major + minor;
                 [[-r, -r, -minor], [r, r, minor]]
@@ -96,6 +101,10 @@ impl Shape {
             &Self::Frustum { base, slope, .. } => p.x.hypot(p.y) - (base + slope * p.z),
             &Self::Sphere(r) => p.norm() - r,
             Self::Section(section) => match section.contains(p) {
+                true => -1.0,
+                false => 1.0,
+            },
+            Self::Facets(facets) => match facets.contains(p) {
                 true => -1.0,
                 false => 1.0,
             },
@@ -168,6 +177,10 @@ impl Shape {
             }
             Self::Section(section) => {
                 section.crossings(o, d, half, &mut add);
+                cuts.sort_by(f64::total_cmp);
+            }
+            Self::Facets(facets) => {
+                facets.crossings(o, d, &mut add);
                 cuts.sort_by(f64::total_cmp);
             }
             &Self::Torus { major, minor } => {

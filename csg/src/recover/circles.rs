@@ -40,9 +40,10 @@ impl Round<'_> {
             Primitive::Sphere { .. } => [0.0, 0.0],
             Primitive::Torus { minor, .. } => [-to_f64(minor), to_f64(minor)],
             Primitive::Prism { height, .. } => [0.0, to_f64(height)],
-            Primitive::Block { .. } | Primitive::Wedge { .. } | Primitive::Revolution { .. } => {
-                [0.0, 0.0]
-            }
+            Primitive::Block { .. }
+            | Primitive::Wedge { .. }
+            | Primitive::Revolution { .. }
+            | Primitive::Polyhedron { .. } => [0.0, 0.0],
         };
         let [lo, hi] = match self.is_reversed {
             true => [-hi, -lo],

@@ -181,9 +181,10 @@ fn axis_along(primitive: &Primitive, direction: &Vector3<f64>) -> Option<AxisUse
         is_reversed: false,
     };
     match primitive {
-        Primitive::Block { .. } | Primitive::Wedge { .. } | Primitive::Prism { .. } => {
-            parallel.map(along)
-        }
+        Primitive::Block { .. }
+        | Primitive::Wedge { .. }
+        | Primitive::Prism { .. }
+        | Primitive::Polyhedron { .. } => parallel.map(along),
         Primitive::Revolution { angle: Some(_), .. } => parallel.map(along),
         Primitive::Sphere { .. } => Some(across),
         _ if parallel == Some(2) => Some(along(2)),

@@ -6,6 +6,7 @@ use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
 use crate::figure::{Figure, FigureEdge};
+use crate::polyhedron::PolyhedronFace;
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -158,6 +159,27 @@ fn members(primitive: &Primitive) -> String {
                 format!(r#","angle":{}"#, decimal(angle.degrees()))
             });
             format!(r#""revolution","figure":{}{angle}"#, figure(of))
+        }
+        Primitive::Polyhedron { polyhedron } => {
+            let points: Vec<String> = polyhedron.points().iter().map(|p| list(p)).collect();
+            let corners = |corners: &Vec<usize>| {
+                let corners: Vec<String> = corners.iter().map(usize::to_string).collect();
+                format!("[{}]", corners.join(","))
+            };
+            // A face with holes is a list of loops.
+            let face = |face: &PolyhedronFace| {
+                let loops: Vec<String> = face.loops.iter().map(corners).collect();
+                match &loops[..] {
+                    [outline] => outline.clone(),
+                    _ => format!("[{}]", loops.join(",")),
+                }
+            };
+            let faces: Vec<String> = polyhedron.faces().iter().map(face).collect();
+            format!(
+                r#""polyhedron","points":[{}],"faces":[{}]"#,
+                points.join(","),
+                faces.join(",")
+            )
         }
     }
 }

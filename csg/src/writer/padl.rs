@@ -9,6 +9,7 @@ use super::turns::{AxisTurn, about_axes};
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::{Builder, BuilderNode};
 use crate::figure::{Figure, FigureEdge};
+use crate::polyhedron::{PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -172,6 +173,26 @@ fn call(primitive: &Primitive) -> String {
                 format!(", ANGLE={}", quotient(angle.degrees()))
             });
             format!("REV({}{angle})", figure(of))
+        }
+        Primitive::Polyhedron { polyhedron } => {
+            let point = |p: &SpacePoint| {
+                let [x, y, z] = p.each_ref().map(quotient);
+                format!("[{x}, {y}, {z}]")
+            };
+            let corners = |corners: &Vec<usize>| {
+                let corners: Vec<String> = corners.iter().map(usize::to_string).collect();
+                format!("[{}]", corners.join(", "))
+            };
+            let face = |face: &PolyhedronFace| {
+                let loops: Vec<String> = face.loops.iter().map(corners).collect();
+                match &loops[..] {
+                    [outline] => outline.clone(),
+                    _ => format!("[{}]", loops.join(", ")),
+                }
+            };
+            let points: Vec<String> = polyhedron.points().iter().map(point).collect();
+            let faces: Vec<String> = polyhedron.faces().iter().map(face).collect();
+            format!("POLY([{}], [{}])", points.join(", "), faces.join(", "))
         }
     }
 }

@@ -7,6 +7,7 @@ use super::number::decimal;
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::Builder;
 use crate::figure::{Figure, FigureEdge};
+use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -138,6 +139,26 @@ fn polygon(figure: &Figure) -> String {
     )
 }
 
+/// OpenSCAD's faces run clockwise as seen from the outside.
+fn polyhedron(polyhedron: &Polyhedron) -> String {
+    let point = |p: &SpacePoint| {
+        let [x, y, z] = p.each_ref().map(decimal);
+        format!("[{x}, {y}, {z}]")
+    };
+    let face = |face: &PolyhedronFace| {
+        let corners: Vec<String> = face.corners().map(|i| i.to_string()).collect();
+        let backwards: Vec<String> = corners.into_iter().rev().collect();
+        format!("[{}]", backwards.join(", "))
+    };
+    let points: Vec<String> = polyhedron.points().iter().map(point).collect();
+    let faces: Vec<String> = polyhedron.faces().iter().map(face).collect();
+    format!(
+        "polyhedron(points = [{}], faces = [{}], convexity = 1);",
+        points.join(", "),
+        faces.join(", ")
+    )
+}
+
 fn node(primitive: &Primitive) -> String {
     match primitive {
         Primitive::Block { size } => {
@@ -191,5 +212,6 @@ fn node(primitive: &Primitive) -> String {
                 polygon(figure)
             )
         }
+        Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
     }
 }

@@ -1,6 +1,7 @@
 //! `.json`: the tree itself.
 
 mod figure;
+mod polyhedron;
 mod value;
 
 use std::ops::Range;
@@ -43,7 +44,7 @@ const OPERATIONS: [(&str, Operation); 3] = [
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
-const PRIMITIVES: [(&str, &[&str]); 9] = [
+const PRIMITIVES: [(&str, &[&str]); 10] = [
     ("block", &["size"]),
     ("wedge", &["size"]),
     ("cylinder", &["r", "h"]),
@@ -53,6 +54,7 @@ const PRIMITIVES: [(&str, &[&str]); 9] = [
     ("torus", &["R", "r"]),
     ("prism", &["figure", "h", "top"]),
     ("revolution", &["figure", "angle"]),
+    ("polyhedron", &["points", "faces"]),
 ];
 
 /// A pending step; the solids created so far are on a stack.
@@ -160,6 +162,7 @@ impl<'a> Reader<'a> {
         let swept = match name.as_str() {
             "prism" => Some(figure::prism(fields)?),
             "revolution" => Some(figure::revolution(fields)?),
+            "polyhedron" => Some(polyhedron::polyhedron(fields)?),
             _ => None,
         };
         if let Some(primitive) = swept {

@@ -10,8 +10,10 @@ mod pov;
 mod robustness;
 
 use super::*;
+use crate::polyhedron::Polyhedron;
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
+use nalgebra::Vector3;
 use premio_kernel::number::rational::{Rational, to_f64};
 
 fn read_text(text: &str, format: Format) -> Result<Description, ReadError> {
@@ -59,7 +61,25 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
             let within = angle.as_ref().is_none_or(|a| turned <= f(a.degrees()));
             within && is_around(figure, [radial, z])
         }
+        Primitive::Polyhedron { polyhedron } => is_enclosed(polyhedron, [x, y, z]),
     }
+}
+
+/// Whether the facets of a polyhedron cover more than half of the directions around a point.
+fn is_enclosed(polyhedron: &Polyhedron, p: [f64; 3]) -> bool {
+    let at = |i: usize| Vector3::from(polyhedron.points()[i].each_ref().map(to_f64)) - Vector3::from(p);
+    let loops = polyhedron.faces().iter().flat_map(|face| &face.loops);
+    let fan = |corners: &Vec<usize>| -> f64 {
+        let triangles = (1..corners.len() - 1).map(|k| {
+            let [a, b, c] = [corners[0], corners[k], corners[k + 1]].map(at);
+            let volume = a.dot(&b.cross(&c));
+            let [x, y, z] = [a.norm(), b.norm(), c.norm()];
+            let across = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+            2.0 * volume.atan2(across)
+        });
+        triangles.sum()
+    };
+    loops.map(fan).sum::<f64>() > std::f64::consts::TAU
 }
 
 /// Whether a tree contains a point, by classifying it with every primitive.

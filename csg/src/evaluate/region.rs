@@ -1,0 +1,56 @@
+//! The region that the walls of a prism, a revolution or a polyhedron bound.
+
+use super::facets::Facets;
+use super::section::{MARGIN, Section, SectionLook};
+use nalgebra::Point3;
+use premio_kernel::number::float::Float;
+
+/// A region that walls bound: surfaces that end where the next wall begins.
+#[derive(Clone, Debug)]
+pub(super) enum WalledRegion<N: Float> {
+    /// The points that are mapped into a figure.
+    Section(Section<N>),
+    /// The inside of a polyhedron.
+    Facets(Facets<N>),
+}
+
+impl<N: Float> WalledRegion<N> {
+    /// The number of walls, which are the first sides of the primitive.
+    pub fn walls(&self) -> usize {
+        match self {
+            Self::Section(section) => section.walls,
+            Self::Facets(facets) => facets.count(),
+        }
+    }
+
+    /// Whether a point is inside. On a wall rounding decides.
+    pub fn contains(&self, p: &Point3<N>) -> bool {
+        match self {
+            Self::Section(section) => section.contains(p),
+            Self::Facets(facets) => facets.contains(p),
+        }
+    }
+
+    /// The walls through a point among those that `is_chosen` selects by their sides, within a
+    /// tolerance, and the distance of the others.
+    pub fn look(
+        &self,
+        p: &Point3<N>,
+        is_chosen: impl Fn(usize) -> bool,
+        tolerance: N,
+    ) -> SectionLook<N> {
+        let margin = N::from_f64(MARGIN) * tolerance;
+        match self {
+            Self::Section(section) => section.look(p, is_chosen, tolerance),
+            Self::Facets(facets) => facets.look(p, is_chosen, tolerance, margin),
+        }
+    }
+
+    /// The signed distance of the closest wall up to a limit; beyond it, the limit with the sign.
+    pub fn level(&self, p: &Point3<N>, limit: N) -> N {
+        match self {
+            Self::Section(section) => section.level(p, limit),
+            Self::Facets(facets) => facets.level(p, limit),
+        }
+    }
+}

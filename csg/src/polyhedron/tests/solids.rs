@@ -1,0 +1,220 @@
+//! Polyhedra: evaluated boundaries against values derived by hand, against the same solids made of
+//! other primitives, and against rays.
+
+use super::*;
+use crate::builder::{Builder, SolidId};
+use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
+use crate::figure::Figure;
+use crate::primitive::Primitive;
+use crate::ray_casting::RayOracle;
+use crate::transform::{Transform, TransformStep};
+use crate::tree::{Operation, Tree};
+use std::sync::Arc;
+
+fn n(x: i32) -> Rational {
+    Rational::from(x)
+}
+
+fn tree_of(make: impl FnOnce(&mut Builder) -> SolidId) -> Tree {
+    let mut builder = Builder::new();
+    let part = make(&mut builder);
+    builder.finish(part).unwrap()
+}
+
+fn evaluated(tree: &Tree) -> Evaluation {
+    let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
+    assert_eq!(known.violations(), []);
+    known
+}
+
+fn primitive(polyhedron: Polyhedron) -> Primitive {
+    let polyhedron = Arc::new(polyhedron);
+    Primitive::Polyhedron { polyhedron }
+}
+
+fn turned(builder: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
+    let mut moves = Transform::new();
+    let axis = [n(1), n(2), n(2)];
+    let degrees = n(degrees);
+    moves.push(TransformStep::Turn { axis, degrees }).unwrap();
+    builder.moved(part, moves)
+}
+
+/// The polyhedron of an extruded polygon.
+fn prism(figure: &Figure, height: i32) -> Polyhedron {
+    let count = figure.edges().len();
+    let at = |z: i32| {
+        let starts = figure.edges().iter().map(|edge| edge.start.clone());
+        starts.map(move |[x, y]| [x, y, n(z)])
+    };
+    let points: Vec<SpacePoint> = at(0).chain(at(height)).collect();
+    let mut first = 0;
+    let mut loops: Vec<Vec<usize>> = Vec::new();
+    for contour in figure.contours() {
+        loops.push((first..first + contour.len()).collect());
+        first += contour.len();
+    }
+    let wall = |of: &Vec<usize>| {
+        let next = of.iter().cycle().skip(1);
+        let walls = of.iter().zip(next);
+        let walls = walls.map(|(&i, &j)| PolyhedronFace::simple(vec![i, j, j + count, i + count]));
+        walls.collect::<Vec<_>>()
+    };
+    let mut faces: Vec<PolyhedronFace> = loops.iter().flat_map(wall).collect();
+    let up = |of: &Vec<usize>| of.iter().map(|i| i + count).collect();
+    let top = loops.iter().map(up).collect();
+    faces.push(PolyhedronFace { loops: top });
+    faces.push(PolyhedronFace { loops }.reversed());
+    Polyhedron::from_faces(&points, &faces).unwrap().polyhedron
+}
+
+/// A polygon with a notch and a hole.
+fn notched() -> Figure {
+    let outline = [[0, 0], [8, 0], [8, 6], [4, 1], [0, 6]];
+    let hole = [[1, 1], [2, 1], [1, 3]];
+    let points = |all: &[[i32; 2]]| all.iter().map(|p| p.map(n)).collect();
+    Figure::polygon(&[points(&outline), points(&hole)]).unwrap()
+}
+
+#[test]
+fn a_polyhedron_of_a_prism_is_the_prism() {
+    let figure = notched();
+    for degrees in [0, 37] {
+        let of = |part: Primitive| {
+            tree_of(|builder| {
+                let part = builder.primitive(part);
+                turned(builder, part, degrees)
+            })
+        };
+        let walls = evaluated(&of(Primitive::prism(figure.clone(), n(3)).unwrap()));
+        let tree = of(primitive(prism(&figure, 3)));
+        let facets = evaluated(&tree);
+        assert_eq!(
+            facets.brep.topology.census().cells,
+            walls.brep.topology.census().cells
+        );
+        let (a, b) = (facets.mass(), walls.mass());
+        assert!((a.volume - b.volume).abs() <= 1e-12 * b.volume);
+        assert!((a.area - b.area).abs() <= 1e-12 * b.area);
+        let rays = RayOracle::new(&tree).volume(4096, 1);
+        assert!(rays.deviation(a.volume, 1e-9) < 6.0, "{rays:?}");
+    }
+}
+
+#[test]
+fn coplanar_triangles_are_one_face() {
+    let square = cube();
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let cut = |[a, b, c, d]: [usize; 4]| [face([a, b, c]), face([a, c, d])];
+    let faces: Vec<PolyhedronFace> = faces.into_iter().flat_map(cut).collect();
+    let made = Polyhedron::from_faces(&square, &faces).unwrap();
+    let tree = tree_of(|builder| {
+        let part = builder.primitive(primitive(made.polyhedron));
+        turned(builder, part, 19)
+    });
+    let known = evaluated(&tree);
+    assert_eq!(known.brep.topology.census().cells, [8, 12, 6, 6]);
+    assert!((known.mass().volume - 8.0).abs() < 1e-12);
+}
+
+/// A star: a pyramid on every face of an octahedron.
+fn star() -> Polyhedron {
+    let mut corners = points(&[
+        [2, 0, 0],
+        [-2, 0, 0],
+        [0, 2, 0],
+        [0, -2, 0],
+        [0, 0, 2],
+        [0, 0, -2],
+    ]);
+    let mut faces = Vec::new();
+    for signs in 0..8usize {
+        let [x, y, z] = [0, 1, 2].map(|k| signs >> k & 1);
+        let tip = corners.len();
+        corners.push([x, y, z].map(|s| if s == 0 { n(3) } else { n(-3) }));
+        let [a, b, c] = [x, 2 + y, 4 + z];
+        let base = match (x + y + z) % 2 {
+            0 => [a, b, c],
+            _ => [a, c, b],
+        };
+        let side = |k: usize| face([base[k], base[(k + 1) % 3], tip]);
+        faces.extend((0..3).map(side));
+    }
+    Polyhedron::from_faces(&corners, &faces).unwrap().polyhedron
+}
+
+#[test]
+fn a_star_is_cut_like_any_solid() {
+    let star = star();
+    let volume = sixfold(&star) / 6.0;
+    // An octahedron of 32/3, and eight pyramids on triangles of area 2 sqrt(3), 7/sqrt(3) high.
+    assert!((volume - (32.0 / 3.0 + 8.0 * 14.0 / 3.0)).abs() < 1e-12);
+    let whole = evaluated(&tree_of(|b| b.primitive(primitive(star.clone()))));
+    assert_eq!(whole.brep.topology.census().cells, [14, 36, 24, 24]);
+    assert!((whole.mass().volume - volume).abs() < 1e-11);
+    for op in [
+        Operation::Union,
+        Operation::Intersection,
+        Operation::Difference,
+    ] {
+        let tree = tree_of(|builder| {
+            let star = builder.primitive(primitive(star.clone()));
+            let ball = Primitive::sphere(Rational::from(5) / Rational::from(2)).unwrap();
+            let ball = builder.primitive(ball);
+            let part = builder.operation(op, &[star, ball]);
+            turned(builder, part, 23)
+        });
+        let known = evaluated(&tree);
+        let found = known.mass().volume;
+        let rays = RayOracle::new(&tree).volume(1 << 14, 1);
+        assert!(rays.deviation(found, 1e-9) < 6.0, "{op:?} {rays:?} {found}");
+    }
+}
+
+#[test]
+fn stars_that_share_faces_join() {
+    // The mirror image at a plane through tips: the stars touch along edges and in faces.
+    for [x, y, z] in [[6, 0, 0], [3, 3, 0], [2, 2, 2], [4, 0, 0], [0, 0, 0]] {
+        let tree = tree_of(|builder| {
+            let one = builder.primitive(primitive(star()));
+            let other = builder.mirrored_y(one);
+            let shift = Transform::shift([x, y, z].map(n));
+            let other = builder.moved(other, shift);
+            builder.operation(Operation::Union, &[one, other])
+        });
+        let known = evaluated(&tree);
+        let found = known.mass().volume;
+        let rays = RayOracle::new(&tree).volume(1 << 14, 1);
+        assert!(rays.deviation(found, 1e-9) < 6.0, "{x} {y} {z} {rays:?} {found}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    /// The hull of points is the intersection of the half spaces of its facets; here it is compared
+    /// with the volume of the exact facets and with rays.
+    #[test]
+    fn hulls_have_their_volume(
+        all in prop::collection::vec(prop::array::uniform3(-5i32..=5), 4..24),
+        degrees in 0..90,
+    ) {
+        let Ok(hull) = Polyhedron::convex_hull(&points(&all)) else {
+            return Ok(());
+        };
+        let volume = sixfold(&hull) / 6.0;
+        let tree = tree_of(|builder| {
+            let part = builder.primitive(primitive(hull.clone()));
+            turned(builder, part, degrees)
+        });
+        let known = evaluated(&tree);
+        prop_assert!((known.mass().volume - volume).abs() <= 1e-11 * volume);
+        prop_assert_eq!(known.brep.topology.faces.len(), hull.faces().len());
+    }
+}

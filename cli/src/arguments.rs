@@ -16,7 +16,7 @@ pub use predict::{
     AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions, ModelOutput,
     ModelRunOptions, PredictOptions, RecordsFormat, RenderOptions, SchemaName, SchemaOptions,
 };
-use premio_csg::reader::ReadOptions;
+use premio_csg::reader::{FacetLimit, ReadOptions};
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetArguments, ViewName};
 use std::path::{Path, PathBuf};
@@ -159,16 +159,27 @@ pub struct ReadingOptions {
     /// that no other contains, the whole scene]
     #[arg(long, value_name = "NAME")]
     pub part: Option<String>,
-    /// Read a .csg primitive with a small $fn as the smooth one
-    #[arg(long)]
+    /// The largest $fn of a .csg file that is meant as a polygon: a number, `none` or `all`
+    #[arg(long, value_name = "N", default_value_t)]
+    pub facets: FacetLimit,
+    /// The same as `--facets none`
+    #[arg(long, conflicts_with = "facets")]
     pub smooth: bool,
 }
 
 impl ReadingOptions {
+    /// Which round shapes are polygons.
+    pub fn facets(&self) -> FacetLimit {
+        match self.smooth {
+            true => FacetLimit::None,
+            false => self.facets,
+        }
+    }
+
     /// The options of the readers.
     pub fn options(&self) -> ReadOptions {
         ReadOptions {
-            smooth: self.smooth,
+            facets: self.facets(),
             part: self.part.clone(),
         }
     }

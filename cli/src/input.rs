@@ -5,7 +5,7 @@ use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use premio::shards::language;
 use premio::{Arithmetic, CoincidencePolicy, EvaluationOptions, Recovery, Solid};
-use premio_csg::reader::{self, Format, ReadOptions};
+use premio_csg::reader::{self, FacetLimit, Format, ReadOptions};
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::DescriptionRecord as Written;
 use premio_visibility::ViewCamera;
@@ -39,7 +39,8 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         // A file that is not text cannot be read either.
         text: String::from_utf8(text).or_else(|e| not_a_text(&name, format, e.as_bytes()))?,
         part: options.reading.part.clone(),
-        smooth: options.reading.smooth,
+        facets: options.reading.facets().recorded(),
+        smooth: false,
         resolution: options.resolution,
         exact: options.exact,
     };
@@ -106,7 +107,8 @@ fn evaluated(
 ) -> Result<EvaluatedPart, CliError> {
     let started = Instant::now();
     let how = ReadOptions {
-        smooth: written.smooth,
+        facets: FacetLimit::from_record(written.smooth, written.facets.as_deref())
+            .map_err(|error| CliError::described(&name, error.into(), written.text.as_bytes()))?,
         part: written.part.clone(),
     };
     let text = written.text.as_bytes();

@@ -1,5 +1,6 @@
 //! Descriptions of solids: primitives, the tree of set operations, the readers, and the writers.
 pub mod builder;
+pub mod construction;
 pub mod evaluate;
 pub mod figure;
 pub mod object_model;

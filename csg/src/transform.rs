@@ -99,6 +99,22 @@ impl Transform {
     }
 
     /// A single translation.
+    /// The steps of a motion: a rotation, and then a shift.
+    pub(crate) fn from_motion(motion: &Motion) -> Self {
+        let mut steps = Vec::new();
+        let turn = Motion::from_quaternion(motion.quaternion()).unwrap_or_default();
+        if !turn.is_identity() {
+            steps.push(TransformStep::Quaternion(motion.quaternion()));
+        }
+        if motion.offset().iter().any(|x| !x.is_zero()) {
+            steps.push(TransformStep::Shift(motion.offset().clone()));
+        }
+        Self {
+            steps,
+            motion: motion.clone(),
+        }
+    }
+
     pub(crate) fn shift(offset: [Rational; 3]) -> Self {
         let motion = Motion::translation(offset.clone());
         let steps = vec![TransformStep::Shift(offset)];

@@ -3,19 +3,22 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use premio_csg::reader::{Format, ReadOptions, parse, read};
+use premio_csg::reader::{FacetLimit, Format, ReadOptions, parse, read};
 use premio_csg::writer::{WriteError, write};
 
 fuzz_target!(|bytes: &[u8]| {
-    for smooth in [false, true] {
-        let options = ReadOptions { smooth, part: None };
+    for facets in [FacetLimit::default(), FacetLimit::None, FacetLimit::All] {
+        let options = ReadOptions {
+            facets,
+            ..ReadOptions::default()
+        };
         for format in Format::ALL {
             match parse("input", bytes, format, &options) {
                 Err(error) => {
                     assert!(error.span.start <= error.span.end && error.span.end <= bytes.len());
                 }
-                // The smooth option does not change what is written.
-                Ok(source) if !smooth => again(&source.builder, source.part),
+                // The limit of facets does not change what is written.
+                Ok(source) if facets == FacetLimit::default() => again(&source.builder, source.part),
                 Ok(_) => {}
             }
         }

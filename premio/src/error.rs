@@ -5,7 +5,7 @@ use crate::number::NumberError;
 use crate::picture::PictureError;
 use premio_csg::builder::TreeError;
 use premio_csg::evaluate::EvaluationError;
-use premio_csg::reader::ReadError;
+use premio_csg::reader::{FacetLimitError, ReadError};
 use premio_csg::writer::WriteError;
 use premio_drawing::sheet::SheetError;
 use premio_exchange::mesh::MeshError;
@@ -61,6 +61,9 @@ pub enum Error {
     /// A description cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// A model records a wrong limit of facets.
+    #[error(transparent)]
+    Facets(#[from] FacetLimitError),
     /// An expression cannot be written as a description.
     #[error(transparent)]
     Description(#[from] WriteError),

@@ -38,7 +38,7 @@ use crate::progress::Progress;
 use crate::write::{json_text, whole_file};
 use crate::{Result, Solid};
 use premio_csg::evaluate::EvaluationOptions;
-use premio_csg::reader::{self, ReadOptions};
+use premio_csg::reader::{self, FacetLimit, ReadOptions};
 use premio_kernel::number::predicates::CoincidencePolicy;
 use premio_predict::image::shading::Finishes;
 use premio_predict::model::Observation;
@@ -260,7 +260,7 @@ impl Model {
         };
         let format = shard::language(record).map_err(in_head)?;
         let how = ReadOptions {
-            smooth: record.smooth,
+            facets: FacetLimit::from_record(record.smooth, record.facets.as_deref())?,
             part: record.part.clone(),
         };
         let name = &self.file.head.part;

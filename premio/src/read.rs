@@ -29,8 +29,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Expression> {
     read_with(path, &ReadOptions::default())
 }
 
-/// Reads a description with options: which part of the text, and whether round primitives with few
-/// facets are smooth.
+/// Reads a description with options: which part of the text, and which round shapes of OpenSCAD are
+/// polygons.
 ///
 /// # Errors
 /// As [`read`].
@@ -101,7 +101,7 @@ pub fn read_bytes(
         language: format.ending().to_owned(),
         text: String::from_utf8_lossy(bytes).into_owned(),
         part: options.part.clone(),
-        smooth: options.smooth,
+        facets: options.facets.recorded(),
         ..DescriptionRecord::default()
     };
     Ok(Expression::described(program, record, name.to_owned()))

@@ -398,11 +398,7 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
 }
 
 /// A polyhedron.
-fn faceted<N: Float>(
-    leaf: NodeId,
-    pose: &Pose<'_, N>,
-    polyhedron: &Polyhedron,
-) -> Solid<N> {
+fn faceted<N: Float>(leaf: NodeId, pose: &Pose<'_, N>, polyhedron: &Polyhedron) -> Solid<N> {
     let facets = Facets::new(polyhedron, pose.turn, pose.point(zero()));
     let side = |facet: usize| {
         let [lo, hi] = facets.bounds(facet);

@@ -8,6 +8,8 @@
 //! | `vanished` | drops primitives thinner than the resolution |
 //! | `walls` | the surfaces that the edges of a figure sweep |
 //! | `section` | which walls of a prism or revolution pass through a point, and where they end |
+//! | `facets` | the same of a polyhedron |
+//! | `region` | one of these two |
 //! | `halfspaces` | every primitive as half-spaces, or as walls between half-spaces |
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
@@ -44,8 +46,8 @@ mod incidence_proof;
 mod membership;
 mod near_cylinders;
 mod radial_order;
-mod relevance;
 mod region;
+mod relevance;
 mod section;
 mod split_curves;
 mod tangent_contacts;

@@ -2,7 +2,9 @@
 
 use super::roots::{root, shortened};
 use super::scalar::{FilteredPoint, orientation};
-use super::{ArcTurn, ContourCorner, Figure, FigureArc, FigureError, FigurePoint, MAX_EDGES};
+use super::{
+    ArcTurn, ContourCorner, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, MAX_EDGES,
+};
 use premio_kernel::number::rational::{Rational, to_f64};
 use std::cmp::Ordering;
 
@@ -36,20 +38,69 @@ fn square(a: &Disc, b: &Disc) -> Rational {
 }
 
 impl Figure {
-    /// The discs or points whose convex hull is that of the figure, if it is a disc or a polygon.
-    pub fn discs(&self) -> Option<Vec<Disc>> {
-        if self.is_disc() {
-            let arc = self.edges.first()?.arc.as_ref()?;
-            return Some(vec![Disc {
+    /// The convex hull of some figures.
+    ///
+    /// # Errors
+    /// There are none, there are too many edges, or the hull has an arc of a circle beyond an arc
+    /// of the figures.
+    pub fn hull_of(figures: &[&Self]) -> Result<Self, FigureError> {
+        let discs: Vec<Disc> = figures.iter().flat_map(|figure| figure.discs()).collect();
+        let hull = Self::convex_hull(&discs)?;
+        let arcs: Vec<&FigureEdge> = figures
+            .iter()
+            .flat_map(|figure| &figure.edges)
+            .filter(|edge| edge.arc.is_some())
+            .collect();
+        let is_covered = |edge: &FigureEdge| edge.arc.is_none() || covers(&arcs, edge);
+        match hull.edges.iter().all(is_covered) {
+            true => Ok(hull),
+            false => Err(FigureError::NoHull),
+        }
+    }
+
+    /// The discs of its arcs that bulge, and its corners. If the hull of these is the figure's, all
+    /// arcs of it belong to the figure.
+    pub(crate) fn discs(&self) -> Vec<Disc> {
+        let mut discs: Vec<Disc> = Vec::new();
+        for edge in &self.edges {
+            discs.push(Disc::point(edge.start.clone()));
+            let Some(arc) = &edge.arc else { continue };
+            let disc = Disc {
                 centre: arc.centre.clone(),
                 radius: arc.radius.clone(),
-            }]);
+            };
+            if arc.turn == ArcTurn::Counterclockwise && discs.iter().all(|known| *known != disc) {
+                discs.push(disc);
+            }
         }
-        let corners = self
-            .edges
+        discs
+    }
+
+    /// The discs and points whose convex hull is the figure, if there are any.
+    pub(crate) fn convex_discs(&self) -> Option<Vec<Disc>> {
+        let hull = Self::hull_of(&[self]).ok()?;
+        let (own, of_hull) = (self.area(), hull.area());
+        let is_same =
+            (of_hull - own).abs() <= own * f64::EPSILON.sqrt() && self.contours.len() == 1;
+        is_same.then(|| self.discs())
+    }
+
+    /// The disc that it is, if it is one.
+    pub(crate) fn as_disc(&self) -> Option<Disc> {
+        let arc = self.edges.first()?.arc.as_ref()?;
+        self.is_disc().then(|| Disc {
+            centre: arc.centre.clone(),
+            radius: arc.radius.clone(),
+        })
+    }
+
+    /// The radius of the disc about the origin that it is, if it is one.
+    pub(crate) fn centred_disc(&self) -> Option<Rational> {
+        let disc = self.as_disc()?;
+        disc.centre
             .iter()
-            .map(|edge| Disc::point(edge.start.clone()));
-        self.is_polygon().then(|| corners.collect())
+            .all(Rational::is_zero)
+            .then_some(disc.radius)
     }
 
     /// Whether it is a disc.
@@ -237,4 +288,44 @@ impl Tangent {
             end: at(b),
         }
     }
+}
+
+/// Whether arcs of the same circle cover an arc together.
+fn covers(arcs: &[&FigureEdge], edge: &FigureEdge) -> bool {
+    let Some(of) = &edge.arc else { return false };
+    // Angles after the start of the edge; the slack is far above rounding.
+    let slack = f64::EPSILON.sqrt();
+    let angle = |from: &FigurePoint, to: &FigurePoint| {
+        let span = FigureEdge {
+            start: from.clone(),
+            end: to.clone(),
+            arc: Some(FigureArc {
+                turn: ArcTurn::Counterclockwise,
+                ..of.clone()
+            }),
+        };
+        span.arc.as_ref().map_or(0.0, |arc| span.turned(arc))
+    };
+    let full = std::f64::consts::TAU;
+    let mut parts: Vec<[f64; 2]> = Vec::new();
+    for known in arcs {
+        let is_same = |arc: &FigureArc| arc.centre == of.centre && arc.radius == of.radius;
+        let Some(arc) = known.arc.as_ref().filter(|arc| is_same(arc)) else {
+            continue;
+        };
+        let [first, last] = match arc.turn {
+            ArcTurn::Counterclockwise => [&known.start, &known.end],
+            ArcTurn::Clockwise => [&known.end, &known.start],
+        };
+        let (from, length) = (angle(&edge.start, first), angle(first, last));
+        parts.extend([[from, from + length], [from - full, from - full + length]]);
+    }
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut reached = 0.0;
+    for [from, to] in parts {
+        if from <= reached + slack {
+            reached = f64::max(reached, to);
+        }
+    }
+    reached >= angle(&edge.start, &edge.end) - slack
 }

@@ -4,18 +4,27 @@
 //! rational coefficients. The ends of edges are rational, too; an end on a circle may be rounded, as
 //! where an edge ends is decided within the resolution, and where it lies is exact.
 
+mod arrangement;
+mod carrier;
 mod chain;
 mod convex_hull;
+mod minkowski;
+mod offset;
 mod outline;
 mod polygonal;
 mod roots;
 mod scalar;
+mod set_operations;
+mod straightened;
 
-use premio_kernel::number::rational::{Rational, to_f64};
+use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
 pub use convex_hull::Disc;
+pub use offset::OffsetJoin;
 pub use outline::ContourCorner;
 pub(crate) use scalar::direction;
+pub(crate) use set_operations::FigureExpression;
+pub use set_operations::FigureOperation;
 
 /// The largest number of edges of a figure.
 pub const MAX_EDGES: usize = 100_000;
@@ -113,6 +122,24 @@ pub enum FigureError {
     /// An arc crosses the axis of a revolution, and its centre is not on the axis.
     #[error("an arc that crosses the axis, with its centre elsewhere")]
     ArcAcrossAxis,
+    /// Too many edges cross or are close to each other.
+    #[error("a figure of {count} edges of which too many cross or are close to each other")]
+    TooComplex {
+        /// The number of edges.
+        count: usize,
+    },
+    /// Edges are so close that it is unclear which of them are one.
+    #[error("edges nearly coincide near ({x}, {y}), closer than a figure is known", x = at[0], y = at[1])]
+    Undecided {
+        /// The rounded place.
+        at: [String; 2],
+    },
+    /// The convex hull has an arc that no figure has.
+    #[error("a convex hull of arcs that end before the hull's arc does")]
+    NoHull,
+    /// A Minkowski sum is not supported.
+    #[error("a Minkowski sum of figures of which none is a disc or a convex polygon")]
+    NoSum,
     /// The region is empty.
     #[error("a figure without area")]
     Empty,
@@ -291,6 +318,40 @@ impl Figure {
             edges,
             contours: self.contours.clone(),
         })
+    }
+
+    /// The figure of directed segments, with the material on their left. As many end as start at
+    /// every point.
+    ///
+    /// # Errors
+    /// There are none.
+    pub(crate) fn from_segments(segments: Vec<FigureEdge>) -> Result<Self, FigureError> {
+        let mut figure = Self {
+            edges: Vec::new(),
+            contours: Vec::new(),
+        };
+        for contour in chain::chained(segments) {
+            figure.contours.push(figure.edges.len());
+            figure.edges.extend(chain::joined(contour));
+        }
+        match figure.edges.is_empty() {
+            true => Err(FigureError::Empty),
+            false => Ok(figure),
+        }
+    }
+
+    /// The figure with its holes filled.
+    pub(crate) fn filled(&self) -> Self {
+        let area = |contour: &[FigureEdge]| contour.iter().map(FigureEdge::area).sum::<f64>();
+        let mut figure = Self {
+            edges: Vec::new(),
+            contours: Vec::new(),
+        };
+        for contour in self.contours().filter(|contour| area(contour) > 0.0) {
+            figure.contours.push(figure.edges.len());
+            figure.edges.extend_from_slice(contour);
+        }
+        figure
     }
 
     /// Whether no point has x > 0.
@@ -495,6 +556,15 @@ impl FigureEdge {
                 ..arc.clone()
             }),
         }
+    }
+
+    /// The angle of an arc in degrees; a whole number where it is one to rounding.
+    pub(crate) fn degrees(&self) -> Rational {
+        let turned = self.arc.as_ref().map_or(0.0, |arc| self.turned(arc));
+        let degrees = turned.to_degrees().abs();
+        let whole = degrees.round();
+        let is_whole = (degrees - whole).abs() <= f64::EPSILON.sqrt() / 64.0;
+        from_f64(if is_whole { whole } else { degrees }).unwrap_or_default()
     }
 
     /// The angle that an arc turns by, positive if counterclockwise.

@@ -54,7 +54,7 @@ impl Figure {
             return Err(FigureError::OffCircle);
         }
         let figure = if contours.iter().flatten().all(|edge| edge.arc.is_none()) {
-            polygonal::figure(contours)
+            polygonal::figure(contours)?
         } else {
             with_arcs(contours)?
         };
@@ -95,7 +95,7 @@ fn ends_on_circle(edge: &FigureEdge) -> bool {
 fn with_arcs(contours: Vec<Vec<FigureEdge>>) -> Result<Figure, FigureError> {
     let all: Vec<RoundedEdge> = contours.iter().flatten().map(RoundedEdge::new).collect();
     let boxes: Vec<[[f64; 2]; 2]> = contours.iter().flatten().map(FigureEdge::bounds).collect();
-    for [a, b] in polygonal::close_pairs(&boxes) {
+    for [a, b] in polygonal::close_pairs(&boxes)? {
         if let Some(at) = all[a].crossing(&all[b]) {
             let at = at.map(|x| format!("{x:.6}"));
             return Err(FigureError::ArcCrosses { at });

@@ -2,7 +2,7 @@
 
 use super::chain::{chained, joined};
 use super::scalar::{FilteredPoint, cross, orientation};
-use super::{Figure, FigureEdge, FigurePoint};
+use super::{Figure, FigureEdge, FigureError, FigurePoint};
 use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
 
@@ -128,8 +128,14 @@ impl Line {
     }
 }
 
+/// The largest number of pairs of edges that are compared.
+const MAX_PAIRS: usize = 10_000_000;
+
 /// The pairs of boxes that intersect, by a sweep along x.
-pub(super) fn close_pairs(boxes: &[[[f64; 2]; 2]]) -> Vec<[usize; 2]> {
+///
+/// # Errors
+/// There are too many.
+pub(super) fn close_pairs(boxes: &[[[f64; 2]; 2]]) -> Result<Vec<[usize; 2]>, FigureError> {
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     order.sort_by(|&a, &b| boxes[a][0][0].total_cmp(&boxes[b][0][0]));
     let mut open: Vec<usize> = Vec::new();
@@ -140,19 +146,23 @@ pub(super) fn close_pairs(boxes: &[[[f64; 2]; 2]]) -> Vec<[usize; 2]> {
         let meets = |j: &usize| boxes[*j][0][1] <= hi[1] && boxes[*j][1][1] >= lo[1];
         pairs.extend(open.iter().copied().filter(meets).map(|j| [j, i]));
         open.push(i);
+        if pairs.len() > MAX_PAIRS {
+            let count = boxes.len();
+            return Err(FigureError::TooComplex { count });
+        }
     }
-    pairs
+    Ok(pairs)
 }
 
 /// The region inside an odd number of polygons.
-pub(super) fn figure(contours: Vec<Vec<FigureEdge>>) -> Figure {
+pub(super) fn figure(contours: Vec<Vec<FigureEdge>>) -> Result<Figure, FigureError> {
     let lines: Vec<Line> = contours
         .iter()
         .flatten()
         .map(|edge| Line::new(&edge.start, &edge.end))
         .collect();
     let boxes: Vec<[[f64; 2]; 2]> = lines.iter().map(Line::bounds).collect();
-    let pairs = close_pairs(&boxes);
+    let pairs = close_pairs(&boxes)?;
     let homes = homes(&contours);
     let is_simple = |&[a, b]: &[usize; 2]| {
         let own = homes[a].contour == homes[b].contour && !homes[a].is_next_to(&homes[b]);
@@ -160,7 +170,7 @@ pub(super) fn figure(contours: Vec<Vec<FigureEdge>>) -> Figure {
         !(a.crosses(b) || own && a.touches(b))
     };
     if !pairs.iter().all(is_simple) {
-        return split(&lines, &pairs);
+        return Ok(split(&lines, &pairs));
     }
     let mut figure = Figure {
         edges: Vec::new(),
@@ -178,7 +188,7 @@ pub(super) fn figure(contours: Vec<Vec<FigureEdge>>) -> Figure {
                 .extend(contour.iter().rev().map(FigureEdge::reversed)),
         }
     }
-    figure
+    Ok(figure)
 }
 
 /// The place of a segment in its contour.

@@ -109,26 +109,47 @@ pub(super) fn is_in_sector(
 }
 
 /// The direction of an angle in degrees: exact where sine and cosine are multiples of a half, else
-/// rounded to f64.
+/// rounded to f64. Directions that are symmetric about an axis or a diagonal have the same numbers.
 pub(crate) fn direction(degrees: &Rational) -> FigurePoint {
-    let turns = degrees / Rational::from(30);
-    let rounded = |angle: f64| {
-        let (sin, cos) = angle.to_radians().sin_cos();
-        let number = |x: f64| from_f64(x).unwrap_or(Rational::ZERO);
-        [number(cos), number(sin)]
-    };
-    let angle = to_f64(degrees);
-    let [cos, sin] = rounded(angle);
-    if !turns.is_int() {
-        return [cos, sin];
+    let right = Rational::from(90);
+    let turns = Rational::from((degrees / &right).floor());
+    let mut rest = degrees - &turns * &right;
+    let is_steep = &rest + &rest > right;
+    if is_steep {
+        rest = &right - rest;
     }
-    let halves = |x: &Rational| {
-        let doubled = (to_f64(x) * 2.0).round();
-        let is_half = (doubled * 0.5 - to_f64(x)).abs() <= 4.0 * f64::EPSILON;
-        match is_half {
-            true => from_f64(doubled * 0.5).unwrap_or(Rational::ZERO),
-            false => x.clone(),
-        }
-    };
-    [halves(&cos), halves(&sin)]
+    let [mut cos, mut sin] = shallow(&rest);
+    if is_steep {
+        std::mem::swap(&mut cos, &mut sin);
+    }
+    match quarter(&turns) {
+        0 => [cos, sin],
+        1 => [-sin, cos],
+        2 => [-cos, -sin],
+        _ => [sin, -cos],
+    }
+}
+
+/// A number of quarter turns within a whole turn.
+fn quarter(turns: &Rational) -> u8 {
+    let whole = Rational::from((turns / Rational::from(4)).floor());
+    let rest = turns - whole * Rational::from(4);
+    (0..4).find(|&k| rest == Rational::from(k)).unwrap_or(0)
+}
+
+/// The direction of an angle from 0 to 45 degrees.
+fn shallow(degrees: &Rational) -> FigurePoint {
+    let number = |x: f64| from_f64(x).unwrap_or(Rational::ZERO);
+    if degrees.is_zero() {
+        return [Rational::ONE, Rational::ZERO];
+    }
+    let (sin, cos) = to_f64(degrees).to_radians().sin_cos();
+    if *degrees == Rational::from(30) {
+        return [number(cos), Rational::ONE / Rational::from(2)];
+    }
+    // At 45 degrees sine and cosine are equal, and rounding may tell them apart.
+    match *degrees == Rational::from(45) {
+        true => [number(cos), number(cos)],
+        false => [number(cos), number(sin)],
+    }
 }

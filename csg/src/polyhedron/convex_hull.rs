@@ -2,7 +2,9 @@
 //! that any number of points may lie in a plane.
 
 use super::orientation::{FilteredPoint, cross, difference, orientation};
-use super::{MAX_CORNERS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, distinct, is_in_line};
+use super::{
+    MAX_HULL_POINTS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, distinct, is_in_line,
+};
 use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, VecDeque};
@@ -13,9 +15,9 @@ impl Polyhedron {
     /// # Errors
     /// There are too many, or they lie in a plane.
     pub fn convex_hull(points: &[SpacePoint]) -> Result<Self, PolyhedronError> {
-        if points.len() > MAX_CORNERS {
+        if points.len() > MAX_HULL_POINTS {
             let count = points.len();
-            return Err(PolyhedronError::TooManyCorners { count });
+            return Err(PolyhedronError::TooManyPoints { count });
         }
         let first = distinct(points);
         let own = points.iter().enumerate().filter(|(i, _)| first[*i] == *i);

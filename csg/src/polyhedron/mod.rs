@@ -12,6 +12,9 @@ use orientation::{FilteredPoint, cross, difference, dot, orientation, plane_norm
 /// The largest number of corners of all faces.
 pub const MAX_CORNERS: usize = 1_000_000;
 
+/// The largest number of points of a convex hull, of which the time grows with the square.
+pub const MAX_HULL_POINTS: usize = 20_000;
+
 /// A point of space.
 pub type SpacePoint = [Rational; 3];
 
@@ -23,6 +26,12 @@ pub enum PolyhedronError {
     #[error("a polyhedron of {count} corners; the limit is {MAX_CORNERS}")]
     TooManyCorners {
         /// The number of corners of all faces.
+        count: usize,
+    },
+    /// There are too many points.
+    #[error("a convex hull of {count} points; the limit is {MAX_HULL_POINTS}")]
+    TooManyPoints {
+        /// The number of points.
         count: usize,
     },
     /// A face names a point that does not exist.
@@ -139,9 +148,8 @@ impl Polyhedron {
         let all: Vec<FilteredPoint> = points.iter().map(FilteredPoint::new).collect();
         let (mut kept, mut triangulated) = (Vec::new(), 0);
         for (index, face) in faces.iter().enumerate() {
-            let merged = |corners: &Vec<usize>| {
-                without_repeats(corners.iter().map(|&i| first[i]).collect())
-            };
+            let merged =
+                |corners: &Vec<usize>| without_repeats(corners.iter().map(|&i| first[i]).collect());
             let loops = face.loops.iter().map(merged);
             let loops: Vec<Vec<usize>> = loops.filter(|corners| corners.len() > 2).collect();
             let face = PolyhedronFace { loops };
@@ -161,7 +169,7 @@ impl Polyhedron {
         let kept = without_flat(kept, &all);
         check_closed(&kept)?;
         let mut polyhedron = Self::compact(points, kept);
-        let volume = polyhedron.signed_volume();
+        let volume = polyhedron.sixfold_volume();
         if volume.is_zero() {
             return Err(PolyhedronError::Empty);
         }
@@ -180,7 +188,10 @@ impl Polyhedron {
     fn compact(points: &[SpacePoint], mut faces: Vec<PolyhedronFace>) -> Self {
         let used: BTreeSet<usize> = faces.iter().flat_map(PolyhedronFace::corners).collect();
         let used: Vec<usize> = used.into_iter().collect();
-        for i in faces.iter_mut().flat_map(|face| face.loops.iter_mut().flatten()) {
+        for i in faces
+            .iter_mut()
+            .flat_map(|face| face.loops.iter_mut().flatten())
+        {
             *i = used.partition_point(|&known| known < *i);
         }
         let points = used.into_iter().map(|i| points[i].clone());
@@ -215,7 +226,7 @@ impl Polyhedron {
     }
 
     /// Six times the volume that the faces enclose.
-    fn signed_volume(&self) -> Rational {
+    pub(crate) fn sixfold_volume(&self) -> Rational {
         let mut sum = Rational::ZERO;
         for corners in self.faces.iter().flat_map(|face| &face.loops) {
             let [a, rest @ ..] = &corners[..] else {
@@ -296,6 +307,16 @@ fn normal_of<'a>(face: &PolyhedronFace, point: impl Fn(usize) -> &'a SpacePoint)
     normals.fold(zero, |sum: SpacePoint, normal| {
         std::array::from_fn(|i| &sum[i] + &normal[i])
     })
+}
+
+/// The indices of points that are listed loop after loop, by the lengths of the loops.
+pub(crate) fn index_loops(lengths: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
+    let mut first = 0;
+    let of = lengths.map(|length| {
+        first += length;
+        (first - length..first).collect()
+    });
+    of.collect()
 }
 
 /// For every point, the index of the first one at its place.

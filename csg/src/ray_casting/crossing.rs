@@ -161,7 +161,9 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
         Shape::Section(section) => section_carriers(section),
         Shape::Facets(facets) => {
             let planes = facets.planes();
-            planes.map(|(at, normal)| Carrier::plane(at, normal)).collect()
+            planes
+                .map(|(at, normal)| Carrier::plane(at, normal))
+                .collect()
         }
     }
 }

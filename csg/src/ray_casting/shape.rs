@@ -1,7 +1,7 @@
 //! The primitives in their own frames: point membership and intersection with a line.
 
-use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
 use super::facets::FacetShape;
+use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
 use super::section::SectionShape;
 use crate::primitive::Primitive;
 use nalgebra::Vector3;

@@ -71,11 +71,77 @@ impl Format {
     }
 }
 
+/// Which round shapes of OpenSCAD are read as polygons and polyhedra.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FacetLimit {
+    /// Those with a `$fn` from 3 to this number, which are meant so; others are true circles.
+    UpTo(u32),
+    /// None.
+    None,
+    /// All, as OpenSCAD shows them.
+    All,
+}
+
+impl FacetLimit {
+    /// The limit as a model records it; `None` for the default.
+    pub fn recorded(self) -> Option<String> {
+        (self != Self::default()).then(|| self.to_string())
+    }
+
+    /// The limit that a model records. Older ones record whether all circles are smooth.
+    ///
+    /// # Errors
+    /// The text is no limit.
+    pub fn from_record(is_smooth: bool, text: Option<&str>) -> Result<Self, FacetLimitError> {
+        match text {
+            _ if is_smooth => Ok(Self::None),
+            Some(text) => text.parse(),
+            None => Ok(Self::default()),
+        }
+    }
+}
+
+impl std::fmt::Display for FacetLimit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::UpTo(limit) => write!(f, "{limit}"),
+            Self::None => f.write_str("none"),
+            Self::All => f.write_str("all"),
+        }
+    }
+}
+
+/// A text is no limit of facets.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not a number of sides from 3 to 10000, `none` or `all`")]
+pub struct FacetLimitError(String);
+
+impl std::str::FromStr for FacetLimit {
+    type Err = FacetLimitError;
+
+    fn from_str(text: &str) -> Result<Self, FacetLimitError> {
+        match text {
+            "none" => Ok(Self::None),
+            "all" => Ok(Self::All),
+            _ => match text.parse() {
+                Ok(limit @ 3..=10_000) => Ok(Self::UpTo(limit)),
+                _ => Err(FacetLimitError(text.to_owned())),
+            },
+        }
+    }
+}
+
+impl Default for FacetLimit {
+    fn default() -> Self {
+        Self::UpTo(12)
+    }
+}
+
 /// How a description is read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// Reads a `.csg` primitive with a small `$fn` as the smooth one.
-    pub smooth: bool,
+    /// Which circles of `.csg` are read as polygons.
+    pub facets: FacetLimit,
     /// The name of the part to read, for languages in which parts have names. By default it is the
     /// last solid assigned in `.padl`, the only object that no other contains in `.asc`, and the
     /// whole scene in `.pov`.

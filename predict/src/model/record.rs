@@ -42,6 +42,9 @@ pub struct DescriptionRecord {
     /// Whether primitives with few facets are read as smooth ones.
     #[serde(default)]
     pub smooth: bool,
+    /// Which round shapes are read as polygons, where it is not the default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<String>,
     /// The resolution, where it is not the default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<f64>,

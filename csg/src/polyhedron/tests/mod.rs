@@ -17,14 +17,20 @@ fn cube() -> Vec<SpacePoint> {
 
 /// Six times the volume, in whole numbers.
 fn sixfold(polyhedron: &Polyhedron) -> f64 {
-    to_f64(&polyhedron.signed_volume())
+    to_f64(&polyhedron.sixfold_volume())
 }
 
 #[test]
 fn the_hull_of_a_cube_has_six_squares() {
     let mut all = cube();
     // Midpoints of edges and faces, the centre, and corners again.
-    all.extend(points(&[[1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 2, 2], [0, 1, 2]]));
+    all.extend(points(&[
+        [1, 0, 0],
+        [1, 1, 0],
+        [1, 1, 1],
+        [2, 2, 2],
+        [0, 1, 2],
+    ]));
     let hull = Polyhedron::convex_hull(&all).unwrap();
     assert_eq!(hull.points().len(), 8);
     assert_eq!(hull.faces().len(), 6);
@@ -42,7 +48,10 @@ fn a_hull_without_volume_is_empty() {
     let line = points(&[[0, 0, 0], [1, 2, 3], [2, 4, 6], [3, 6, 9]]);
     assert_eq!(Polyhedron::convex_hull(&line), Err(PolyhedronError::Empty));
     let upright = points(&[[0, 0, 0], [0, 0, 3], [0, 1, 1], [0, 2, 5]]);
-    assert_eq!(Polyhedron::convex_hull(&upright), Err(PolyhedronError::Empty));
+    assert_eq!(
+        Polyhedron::convex_hull(&upright),
+        Err(PolyhedronError::Empty)
+    );
 }
 
 #[test]
@@ -89,7 +98,11 @@ fn open_faces_are_refused_with_an_edge() {
     let missing = Polyhedron::from_faces(&corners, &[face([0, 1, 9])]);
     assert!(matches!(
         missing,
-        Err(PolyhedronError::NoPoint { face: 0, point: 9, count: 4 })
+        Err(PolyhedronError::NoPoint {
+            face: 0,
+            point: 9,
+            count: 4
+        })
     ));
 }
 
@@ -117,6 +130,6 @@ proptest! {
             }
         }
         let again = Polyhedron::convex_hull(hull.points()).unwrap();
-        prop_assert_eq!(again.signed_volume(), hull.signed_volume());
+        prop_assert_eq!(again.sixfold_volume(), hull.sixfold_volume());
     }
 }

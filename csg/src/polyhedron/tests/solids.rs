@@ -4,7 +4,7 @@
 use super::*;
 use crate::builder::{Builder, SolidId};
 use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
-use crate::figure::Figure;
+use crate::figure::{Figure, FigureEdge};
 use crate::primitive::Primitive;
 use crate::ray_casting::RayOracle;
 use crate::transform::{Transform, TransformStep};
@@ -48,12 +48,7 @@ fn prism(figure: &Figure, height: i32) -> Polyhedron {
         starts.map(move |[x, y]| [x, y, n(z)])
     };
     let points: Vec<SpacePoint> = at(0).chain(at(height)).collect();
-    let mut first = 0;
-    let mut loops: Vec<Vec<usize>> = Vec::new();
-    for contour in figure.contours() {
-        loops.push((first..first + contour.len()).collect());
-        first += contour.len();
-    }
+    let loops = index_loops(figure.contours().map(<[FigureEdge]>::len));
     let wall = |of: &Vec<usize>| {
         let next = of.iter().cycle().skip(1);
         let walls = of.iter().zip(next);
@@ -192,7 +187,10 @@ fn stars_that_share_faces_join() {
         let known = evaluated(&tree);
         let found = known.mass().volume;
         let rays = RayOracle::new(&tree).volume(1 << 14, 1);
-        assert!(rays.deviation(found, 1e-9) < 6.0, "{x} {y} {z} {rays:?} {found}");
+        assert!(
+            rays.deviation(found, 1e-9) < 6.0,
+            "{x} {y} {z} {rays:?} {found}"
+        );
     }
 }
 

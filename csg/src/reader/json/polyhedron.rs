@@ -43,9 +43,14 @@ pub(super) fn polyhedron(fields: &Fields<'_>) -> Result<Primitive, SpannedError>
     };
     let face = |&id: &ValueId| {
         let parts = items(document, id, FACE)?;
-        let is_nested = parts.iter().all(|&part| items(document, part, FACE).is_ok());
+        let is_nested = parts
+            .iter()
+            .all(|&part| items(document, part, FACE).is_ok());
         let loops: Vec<Vec<usize>> = match is_nested && !parts.is_empty() {
-            true => parts.iter().map(|&part| corners(part)).collect::<Result<_, _>>()?,
+            true => parts
+                .iter()
+                .map(|&part| corners(part))
+                .collect::<Result<_, _>>()?,
             false => vec![corners(id)?],
         };
         Ok(PolyhedronFace { loops })

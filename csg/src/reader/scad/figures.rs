@@ -6,24 +6,9 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::arguments::{Argument, Arguments, Value};
-use super::measures::{half, length, radius, sides};
+use super::facets::FacetRule;
+use super::measures::{half, length, radius};
 use crate::figure::{Figure, FigureError, FigurePoint, PlaneMap, direction};
-
-/// The image of a figure; `None` if it has no area.
-pub(super) fn mapped(
-    figure: &Figure,
-    map: &PlaneMap,
-    span: &Range<usize>,
-) -> Result<Option<Figure>, SpannedError> {
-    if map.is_identity() {
-        return Ok(Some(figure.clone()));
-    }
-    match figure.mapped(map) {
-        Ok(figure) => Ok(Some(figure)),
-        Err(FigureError::Empty) => Ok(None),
-        Err(error) => Err(bad_figure(&error, span)),
-    }
-}
 
 /// The error of a figure that is not exact.
 pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedError {
@@ -38,10 +23,10 @@ pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedErr
 pub(super) fn figure(
     name: &str,
     arguments: &mut Arguments,
-    smooth: bool,
+    rule: &mut FacetRule,
 ) -> Result<Option<Figure>, SpannedError> {
     let made = match name {
-        "circle" => circle(arguments, smooth)?,
+        "circle" => circle(arguments, rule)?,
         "square" => square(arguments)?,
         _ => polygon(arguments)?,
     };
@@ -54,12 +39,12 @@ pub(super) fn figure(
 
 type Made = Result<Figure, FigureError>;
 
-fn circle(arguments: &mut Arguments, smooth: bool) -> Result<Made, SpannedError> {
+fn circle(arguments: &mut Arguments, rule: &mut FacetRule) -> Result<Made, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let Some(radius) = radius(arguments, "r", "d")? else {
         return arguments.require("r").map(|_| Err(FigureError::Empty));
     };
-    Ok(match sides(arguments, smooth)? {
+    Ok(match rule.sides(arguments, &radius)? {
         Some(count) => regular_polygon(&radius, count),
         None => Figure::disc(&radius),
     })

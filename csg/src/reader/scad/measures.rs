@@ -47,23 +47,6 @@ pub(super) fn checked(
     made.map_err(|error| bad_length(error, None, span.clone()))
 }
 
-/// The most sides of a circle that is meant as a polygon.
-pub(super) const MOST_SIDES: u32 = 12;
-
-/// The number of sides of the polygon that a node's `$fn` asks for in place of a circle; `None` for
-/// a circle, and if `smooth` overrides it.
-pub(super) fn sides(arguments: &Arguments, smooth: bool) -> Result<Option<u32>, SpannedError> {
-    let Some(argument) = arguments.find("$fn") else {
-        return Ok(None);
-    };
-    let value = argument.number()?;
-    let count = (3..=MOST_SIDES)
-        .rev()
-        .find(|&n| Rational::from(n) <= *value);
-    let is_polygon = *value < Rational::from(MOST_SIDES + 1) && !smooth;
-    Ok(count.filter(|_| is_polygon))
-}
-
 /// Half of a length.
 pub(super) fn half(value: &Rational) -> Rational {
     value / Rational::from(2)

@@ -2,76 +2,40 @@
 
 use std::ops::Range;
 
-use premio_kernel::motion::RationalMatrix;
-use premio_kernel::number::rational::{Rational, exact_sqrt, from_decimal, to_f64};
+use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::number::rational::{Rational, from_decimal, to_f64};
 
+use super::super::FacetLimit;
 use super::super::error::SpannedError;
-use super::super::lexer::Lexeme;
+use super::super::lexer::{Cursor, Lexeme};
 use super::super::notes::Notes;
-use super::super::rigid_fit::{NotRigid, Placement, placement};
-use super::arguments::{Argument, Arguments};
-use super::extrusion::{self, Raise};
-use super::figures;
-use super::hull::{Around, HullFrame, HullOperand};
-use super::measures::{Shape, sides};
-use super::plane::{Extrusion, Sweep};
+use super::SIX_DIGITS;
+use super::arguments::{Argument, Arguments, Value};
+use super::facets::FacetRule;
+use super::figures::{self, bad_figure};
+use super::matrix::Matrix;
+use super::measures::Shape;
+use super::region::Region;
 use super::shapes;
+use super::sweep::{Raise, Spin, operation};
+use super::syntax::{ScadFile, ScadNode};
 use crate::builder::{Builder, SolidId};
-use crate::figure::PlaneMap;
-use crate::primitive::RevolutionAngle;
-use crate::tree::Operation;
+use crate::construction::{
+    AffineMap, ConstructionError, convex_hull, mapped, minkowski_sum, section, shadow,
+};
+use crate::evaluate::{EvaluationOptions, evaluate};
+use crate::figure::{Figure, FigureError, FigureOperation, OffsetJoin, PlaneMap};
 use premio_text::escape::quote;
 
-/// How the children of a block are combined.
-pub(super) enum Kind {
-    Union,
-    Intersection,
-    Difference,
-    Placed(Box<Placement>),
-    /// Scaled about the origin, and then placed.
-    Scaled(Rational, Box<Placement>),
-    /// The convex hull of its operands.
-    Hull,
-}
-
-impl Kind {
-    pub(super) fn combine(self, builder: &mut Builder, children: &[SolidId]) -> SolidId {
-        let op = match self {
-            Self::Union | Self::Placed(_) | Self::Scaled(..) | Self::Hull => Operation::Union,
-            Self::Intersection => Operation::Intersection,
-            Self::Difference => Operation::Difference,
-        };
-        let part = builder.operation(op, children);
-        let (part, placement) = match self {
-            Self::Placed(placement) => (part, placement),
-            Self::Scaled(factor, placement) => (builder.scaled(part, factor), placement),
-            Self::Union | Self::Intersection | Self::Difference | Self::Hull => return part,
-        };
-        let part = if placement.mirrored {
-            builder.mirrored_y(part)
-        } else {
-            part
-        };
-        builder.moved(part, placement.moves)
-    }
-}
-
-pub(super) enum Node {
-    Shape(Box<Shape>),
-    /// An operand of the hull around the node.
-    Operand(Option<HullOperand>),
-    Block {
-        kind: Kind,
-        around: Around,
-    },
-}
-
-fn solid(shape: Shape) -> Node {
-    Node::Shape(Box::new(shape))
+/// What a node makes.
+enum Geometry {
+    Nothing,
+    Plane(Region),
+    Solid(SolidId),
 }
 
 /// The supported nodes.
-const KNOWN: [&str; 16] = [
+const KNOWN: [&str; 22] = [
     "group",
     "union",
     "hull",
@@ -83,159 +47,475 @@ const KNOWN: [&str; 16] = [
     "cube",
     "sphere",
     "cylinder",
+    "polyhedron",
     "linear_extrude",
     "rotate_extrude",
     "circle",
     "square",
     "polygon",
+    "offset",
+    "minkowski",
+    "projection",
+    "resize",
+    "fill",
 ];
 
-/// The meaning of a node inside the given extrusion.
-pub(super) fn node(
-    name: &str,
-    place: Lexeme,
-    arguments: &mut Arguments,
-    around: &Around,
-    smooth: bool,
-    notes: &mut Notes,
-) -> Result<Node, SpannedError> {
-    let plane = around.is_plane();
-    let block = |kind| {
-        Ok(Node::Block {
-            kind,
-            around: around.clone(),
-        })
-    };
-    match name {
-        "group" | "union" | "render" | "color" => block(Kind::Union),
-        "intersection" | "difference" | "linear_extrude" | "rotate_extrude"
-            if matches!(around, Around::Hull(_)) =>
-        {
-            let found = format!("{} inside `hull`", quote(name));
-            Err(SpannedError::input(
-                place.span(),
-                found,
-                "a shape without operations",
-            ))
+/// Evaluates the nodes of a file, children first.
+pub(super) struct Evaluator<'c, 'a> {
+    cursor: &'c Cursor<'a>,
+    pub builder: Builder,
+    pub notes: Notes,
+    pub rule: FacetRule,
+}
+
+/// The children of a node.
+struct Children {
+    each: Vec<Geometry>,
+    /// The names of those that make something.
+    names: Vec<Lexeme>,
+}
+
+impl<'c, 'a> Evaluator<'c, 'a> {
+    pub fn new(cursor: &'c Cursor<'a>, facets: FacetLimit) -> Self {
+        Self {
+            cursor,
+            builder: Builder::new(),
+            notes: Notes::of_digits(SIX_DIGITS),
+            rule: FacetRule::new(facets),
         }
-        "hull" => Ok(hull(around)),
-        "intersection" => Ok(combined(Kind::Intersection, around)),
-        "difference" => Ok(combined(Kind::Difference, around)),
-        "multmatrix" => matrix(arguments, around, notes),
-        "linear_extrude" | "rotate_extrude" | "cube" | "sphere" | "cylinder" if plane => {
-            let found = format!("{} inside an extrusion", quote(name));
-            Err(SpannedError::input(place.span(), found, "a plane figure"))
-        }
-        "linear_extrude" => {
-            let raise = Raise::new(arguments)?;
-            Ok(extruded(Sweep::Raised(raise)))
-        }
-        "rotate_extrude" => revolve(arguments, smooth),
-        "cube" | "sphere" | "cylinder" => {
-            let shape = match name {
-                "cube" => shapes::cube(arguments)?,
-                "sphere" => shapes::sphere(arguments, smooth)?,
-                _ => shapes::cylinder(arguments, smooth)?,
+    }
+
+    /// The solid of a file: the first subtree marked `!`, or all nodes.
+    pub fn solid(&mut self, file: ScadFile) -> Result<SolidId, SpannedError> {
+        let ScadFile { nodes, top } = file;
+        let names: Vec<Lexeme> = nodes.iter().map(|node| node.name).collect();
+        let mut made: Vec<Option<Geometry>> = Vec::with_capacity(nodes.len());
+        let mut root: Option<Geometry> = None;
+        for mut node in nodes {
+            if !node.is_live {
+                made.push(None);
+                continue;
+            }
+            let live: Vec<usize> = node
+                .children
+                .iter()
+                .copied()
+                .filter(|&c| made[c].is_some())
+                .collect();
+            let children = Children {
+                names: live.iter().map(|&c| names[c]).collect(),
+                each: live.into_iter().filter_map(|c| made[c].take()).collect(),
             };
-            match around {
-                Around::Hull(hull) => Ok(Node::Operand(hull.solid(&shape, &arguments.span)?)),
-                _ => Ok(solid(shape)),
+            let geometry = self.geometry(&mut node, children)?;
+            match node.is_root {
+                true => {
+                    root.get_or_insert(geometry);
+                    made.push(None);
+                }
+                false => made.push(Some(geometry)),
             }
         }
-        "circle" | "square" | "polygon" => {
-            if let Around::Hull(hull) = around
-                && plane
-            {
-                let figure = figures::figure(name, arguments, smooth)?;
-                let operand = figure.map(|figure| hull.figure(&figure, &arguments.span));
-                return Ok(Node::Operand(operand.transpose()?.flatten()));
-            }
-            figure(name, place, arguments, around, smooth).map(solid)
+        if let Some(root) = root {
+            return self.as_solid(root);
         }
-        _ => Err(unknown(name, place)),
+        let parts = top.into_iter().filter_map(|node| made[node].take());
+        let parts: Vec<SolidId> = parts.map(|g| self.as_solid(g)).collect::<Result<_, _>>()?;
+        Ok(self
+            .builder
+            .operation(crate::tree::Operation::Union, &parts))
+    }
+
+    fn as_solid(&self, geometry: Geometry) -> Result<SolidId, SpannedError> {
+        match geometry {
+            Geometry::Nothing => Ok(SolidId::EMPTY),
+            Geometry::Solid(solid) => Ok(solid),
+            Geometry::Plane(region) => {
+                let found = "a plane figure outside an extrusion";
+                Err(SpannedError::input(region.span(), found, "a solid"))
+            }
+        }
+    }
+
+    fn geometry(
+        &mut self,
+        node: &mut ScadNode,
+        children: Children,
+    ) -> Result<Geometry, SpannedError> {
+        let name = self.cursor.text(node.name);
+        let arguments = &mut node.arguments;
+        let union = FigureOperation::Union;
+        match name {
+            "group" | "union" | "render" | "color" => self.combined(union, children),
+            "intersection" => self.combined(FigureOperation::Intersection, children),
+            "difference" => self.combined(FigureOperation::Difference, children),
+            "multmatrix" => {
+                let matrix = Matrix::new(arguments, &mut self.notes)?;
+                match self.combined(union, children)? {
+                    Geometry::Nothing => Ok(Geometry::Nothing),
+                    Geometry::Plane(region) => matrix.of_region(region).map(Geometry::Plane),
+                    Geometry::Solid(part) => matrix
+                        .of_solid(&mut self.builder, part)
+                        .map(Geometry::Solid),
+                }
+            }
+            "linear_extrude" => {
+                let raise = Raise::new(arguments)?;
+                let region = self.region(children, name)?;
+                let part = region.map(|r| raise.solid(&mut self.builder, &r, arguments));
+                Ok(solid(part.transpose()?))
+            }
+            "rotate_extrude" => {
+                let spin = Spin::new(arguments, &mut self.rule)?;
+                let region = self.region(children, name)?;
+                let part = region.map(|r| spin.solid(&mut self.builder, &r, &arguments.span));
+                Ok(solid(part.transpose()?))
+            }
+            "cube" => shapes::cube(arguments).map(|shape| self.placed(shape)),
+            "sphere" => shapes::sphere(arguments, &mut self.rule).map(|shape| self.placed(shape)),
+            "cylinder" => {
+                shapes::cylinder(arguments, &mut self.rule).map(|shape| self.placed(shape))
+            }
+            "polyhedron" => {
+                shapes::polyhedron(arguments, &mut self.notes).map(|shape| self.placed(shape))
+            }
+            "circle" | "square" | "polygon" => {
+                let figure = figures::figure(name, arguments, &mut self.rule)?;
+                let span = node.name.span();
+                Ok(plane(figure.map(|figure| Region::new(figure, span))))
+            }
+            "hull" => self.hull(children, &arguments.span),
+            "minkowski" => self.minkowski(children, &arguments.span),
+            "offset" => {
+                let region = self.region(children, name)?;
+                self.offset(region, arguments)
+            }
+            "fill" => {
+                let region = self.region(children, name)?;
+                let figure = region
+                    .map(|r| r.evaluated(&arguments.span))
+                    .transpose()?
+                    .flatten();
+                let filled = figure.map(|figure| figure.filled());
+                Ok(plane(
+                    filled.map(|figure| Region::new(figure, arguments.span.clone())),
+                ))
+            }
+            "projection" => self.projection(children, arguments),
+            "resize" => self.resize(children, arguments),
+            _ => Err(unknown(name, node.name)),
+        }
+    }
+
+    fn placed(&mut self, shape: Shape) -> Geometry {
+        let Some(part) = shape else {
+            return Geometry::Nothing;
+        };
+        let solid = self.builder.primitive(part.primitive);
+        Geometry::Solid(self.builder.moved(solid, part.moves))
+    }
+
+    /// A set operation on solids or on plane figures.
+    fn combined(
+        &mut self,
+        op: FigureOperation,
+        children: Children,
+    ) -> Result<Geometry, SpannedError> {
+        let is_plane = |g: &Geometry| matches!(g, Geometry::Plane(_));
+        let is_solid = |g: &Geometry| matches!(g, Geometry::Solid(_));
+        let planes = children.each.iter().any(is_plane);
+        if planes && let Some(k) = children.each.iter().position(is_solid) {
+            return Err(self.mixed(children.names[k], "beside a plane figure"));
+        }
+        if planes {
+            let operands = children.each.into_iter().map(|g| match g {
+                Geometry::Plane(region) => Some(region),
+                Geometry::Nothing | Geometry::Solid(_) => None,
+            });
+            return Region::combined(op, operands.collect()).map(plane);
+        }
+        let parts = children.each.into_iter().map(|g| match g {
+            Geometry::Solid(part) => part,
+            Geometry::Nothing | Geometry::Plane(_) => SolidId::EMPTY,
+        });
+        let parts: Vec<SolidId> = parts.collect();
+        Ok(solid(Some(self.builder.operation(operation(op), &parts))))
+    }
+
+    /// The error of a node that is not of the expected kind.
+    fn mixed(&self, name: Lexeme, place: &str) -> SpannedError {
+        let found = format!("{} {place}", quote(self.cursor.text(name)));
+        SpannedError::input(name.span(), found, "a plane figure")
+    }
+
+    /// The union of plane figures inside a node.
+    fn region(&mut self, children: Children, outer: &str) -> Result<Option<Region>, SpannedError> {
+        let is_solid = |g: &Geometry| matches!(g, Geometry::Solid(_));
+        if let Some(k) = children.each.iter().position(is_solid) {
+            return Err(self.mixed(children.names[k], &format!("inside `{outer}`")));
+        }
+        match self.combined(FigureOperation::Union, children)? {
+            Geometry::Plane(region) => Ok(Some(region)),
+            Geometry::Nothing | Geometry::Solid(_) => Ok(None),
+        }
+    }
+
+    fn hull(&mut self, children: Children, span: &Range<usize>) -> Result<Geometry, SpannedError> {
+        let solids = solids(&children);
+        if !solids.is_empty() || children.each.is_empty() {
+            let hull = convex_hull(&mut self.builder, &solids);
+            return constructed(hull, span).map(solid);
+        }
+        let mut figures: Vec<Figure> = Vec::new();
+        for geometry in &children.each {
+            let Geometry::Plane(region) = geometry else {
+                continue;
+            };
+            match region.figures()? {
+                Some(own) => figures.extend(own),
+                None => figures.extend(region.evaluated(span)?),
+            }
+        }
+        if figures.is_empty() {
+            return Ok(Geometry::Nothing);
+        }
+        let hull = Figure::hull_of(&figures.iter().collect::<Vec<_>>());
+        Ok(plane(
+            made(hull, span)?.map(|f| Region::new(f, span.clone())),
+        ))
+    }
+
+    fn minkowski(
+        &mut self,
+        children: Children,
+        span: &Range<usize>,
+    ) -> Result<Geometry, SpannedError> {
+        let solids = solids(&children);
+        if !solids.is_empty() || children.each.is_empty() {
+            let sum = minkowski_sum(&mut self.builder, &solids);
+            return constructed(sum, span).map(solid);
+        }
+        let mut sum: Option<Figure> = None;
+        for geometry in &children.each {
+            let Geometry::Plane(region) = geometry else {
+                continue;
+            };
+            let Some(figure) = region.evaluated(span)? else {
+                return Ok(Geometry::Nothing);
+            };
+            sum = match sum {
+                None => Some(figure),
+                Some(sum) => made(sum.minkowski_sum(&figure), span)?,
+            };
+        }
+        Ok(plane(sum.map(|figure| Region::new(figure, span.clone()))))
+    }
+
+    fn offset(
+        &mut self,
+        region: Option<Region>,
+        arguments: &mut Arguments,
+    ) -> Result<Geometry, SpannedError> {
+        arguments.bind(&["r", "delta", "chamfer"])?;
+        let (distance, join) = match (arguments.find("r"), arguments.find("delta")) {
+            (Some(r), _) => (r.number()?.clone(), OffsetJoin::Round),
+            (None, Some(delta)) => {
+                let join = match arguments.flag("chamfer")? {
+                    true => OffsetJoin::Chamfer,
+                    false => OffsetJoin::Miter,
+                };
+                (delta.number()?.clone(), join)
+            }
+            (None, None) => (arguments.require("r")?.number()?.clone(), OffsetJoin::Round),
+        };
+        let span = arguments.span.clone();
+        let figure = region.map(|r| r.evaluated(&span)).transpose()?.flatten();
+        let Some(figure) = figure else {
+            return Ok(Geometry::Nothing);
+        };
+        let grown = made(figure.offset(&distance, join), &span)?;
+        Ok(plane(grown.map(|figure| Region::new(figure, span))))
+    }
+
+    fn projection(
+        &mut self,
+        children: Children,
+        arguments: &mut Arguments,
+    ) -> Result<Geometry, SpannedError> {
+        arguments.bind(&["cut"])?;
+        let span = arguments.span.clone();
+        let is_cut = arguments.flag("cut")?;
+        let Geometry::Solid(part) = self.combined(FigureOperation::Union, children)? else {
+            return Ok(Geometry::Nothing);
+        };
+        let figure = match is_cut {
+            true => section(&self.builder, part),
+            false => shadow(&self.builder, part),
+        };
+        match figure {
+            Ok(figure) => Ok(Geometry::Plane(Region::new(figure, span))),
+            Err(error) if error.is_empty() => Ok(Geometry::Nothing),
+            Err(error) => Err(construction_error(&error, &span)),
+        }
+    }
+
+    fn resize(
+        &mut self,
+        children: Children,
+        arguments: &mut Arguments,
+    ) -> Result<Geometry, SpannedError> {
+        arguments.bind(&["newsize", "auto"])?;
+        let span = arguments.span.clone();
+        let sizes = numbers(arguments.require("newsize")?)?;
+        let auto = flags(arguments)?;
+        match self.combined(FigureOperation::Union, children)? {
+            Geometry::Nothing => Ok(Geometry::Nothing),
+            Geometry::Plane(region) => {
+                let Some(figure) = region.evaluated(&span)? else {
+                    return Ok(Geometry::Nothing);
+                };
+                let [lo, hi] = figure.bounds();
+                let [x, y, _] = factors(&sizes, &auto, &[hi[0] - lo[0], hi[1] - lo[1]]);
+                let map = PlaneMap {
+                    matrix: [[x, Rational::ZERO], [Rational::ZERO, y]],
+                    ..PlaneMap::identity()
+                };
+                Ok(Geometry::Plane(region.mapped(&map, None)))
+            }
+            Geometry::Solid(part) => {
+                let tree = self.builder.finish(part);
+                let tree = tree.map_err(|error| construction_error(&error.into(), &span))?;
+                let known = evaluate(&tree, &EvaluationOptions::default());
+                let known = known.map_err(|error| {
+                    let expected = "a solid whose size is known";
+                    SpannedError::input(span.clone(), error.to_string(), expected)
+                })?;
+                let Aabb { min, max } = known.bounds;
+                let extent = [0, 1, 2].map(|i| max[i] - min[i]);
+                let map = AffineMap::scale(&factors(&sizes, &auto, &extent));
+                let image = mapped(&mut self.builder, part, &map);
+                constructed(image, &span).map(solid)
+            }
+        }
     }
 }
 
-/// The block of a hull. A hull inside a hull adds nothing to a union.
-fn hull(around: &Around) -> Node {
-    match around {
-        Around::Hull(_) => Node::Block {
-            kind: Kind::Union,
-            around: around.clone(),
-        },
-        _ => Node::Block {
-            kind: Kind::Hull,
-            around: Around::Hull(Box::new(HullFrame::new(around.clone()))),
-        },
+/// The numbers of a list of up to three, filled up with zeros.
+fn numbers(argument: &Argument) -> Result<[Rational; 3], SpannedError> {
+    let items = argument.items("a list of up to three numbers")?;
+    let mut all: [Rational; 3] = Default::default();
+    for (x, item) in all.iter_mut().zip(items) {
+        *x = item.number()?.clone();
     }
+    Ok(all)
 }
 
-/// The block of an operation that removes material.
-fn combined(kind: Kind, around: &Around) -> Node {
-    let mut around = around.clone();
-    if let Around::Extruded(extrusion) = &mut around {
-        extrusion.is_combined = true;
-    }
-    Node::Block { kind, around }
-}
-
-/// The block of an extrusion.
-fn extruded(sweep: Sweep) -> Node {
-    Node::Block {
-        kind: Kind::Union,
-        around: Around::Extruded(Box::new(Extrusion::new(sweep))),
-    }
-}
-
-fn figure(
-    name: &str,
-    place: Lexeme,
-    arguments: &mut Arguments,
-    around: &Around,
-    smooth: bool,
-) -> Result<Shape, SpannedError> {
-    let Around::Extruded(extrusion) = around else {
-        let found = format!("the plane figure {} outside an extrusion", quote(name));
-        return Err(SpannedError::input(place.span(), found, "a solid"));
+/// The flags of `auto`: one for all axes, or one each.
+fn flags(arguments: &Arguments) -> Result<[bool; 3], SpannedError> {
+    let Some(argument) = arguments.find("auto") else {
+        return Ok([false; 3]);
     };
-    if let Some(shape) = primitive(name, arguments, extrusion, smooth)? {
-        return Ok(shape);
+    let mut all = [false; 3];
+    match &argument.value {
+        Value::List(items) => {
+            for (flag, item) in all.iter_mut().zip(items) {
+                *flag = match &item.value {
+                    Value::Number(number) => !number.is_zero(),
+                    _ => item.bool()?,
+                };
+            }
+        }
+        _ => all = [argument.bool()?; 3],
     }
-    let figure = figures::figure(name, arguments, smooth)?;
-    figure.map_or(Ok(None), |figure| extrusion.solid(&figure, &arguments.span))
+    Ok(all)
 }
 
-/// The primitive that is an extruded figure, if there is one.
-fn primitive(
-    name: &str,
-    arguments: &mut Arguments,
-    extrusion: &Extrusion,
-    smooth: bool,
-) -> Result<Option<Shape>, SpannedError> {
-    let is_round = name == "circle" && sides(arguments, smooth)?.is_none();
-    match &extrusion.sweep {
-        Sweep::Raised(raise) if is_round && extrusion.map.is_identity() => {
-            extrusion::circle(arguments, raise).map(Some)
-        }
-        Sweep::Raised(raise) if extrusion.is_straight() => match name {
-            "square" => extrusion::square(arguments, raise).map(Some),
-            "polygon" => extrusion::triangle(arguments, raise),
-            _ => Ok(None),
-        },
-        Sweep::Revolved(None) if is_round && extrusion.map.is_rigid() => {
-            arguments.bind(&["r", "d"])?;
-            shapes::ring(arguments, &extrusion.map)
-        }
-        _ => Ok(None),
+/// The factors that give a box new sizes. A size of zero keeps the axis, or with `auto` scales it
+/// as the axis that grows most.
+fn factors(sizes: &[Rational; 3], auto: &[bool; 3], extent: &[f64]) -> [Rational; 3] {
+    let own = |i: usize| {
+        // The size is rounded to its digits, so that equal ones are equal.
+        let size = extent.get(i).copied().filter(|x| *x > 0.0);
+        let size = size.and_then(|x| from_decimal(&format!("{x:.11e}")).ok());
+        let size = size.filter(|_| !sizes[i].is_zero());
+        size.map(|size| &sizes[i] / size)
+    };
+    let most = (0..3)
+        .filter_map(own)
+        .max_by(|a, b| to_f64(a).total_cmp(&to_f64(b)));
+    std::array::from_fn(|i| {
+        let automatic = most.clone().filter(|_| auto[i] && sizes[i].is_zero());
+        own(i).or(automatic).unwrap_or(Rational::ONE)
+    })
+}
+
+fn solid(part: Option<SolidId>) -> Geometry {
+    match part {
+        Some(part) if !part.is_empty() => Geometry::Solid(part),
+        _ => Geometry::Nothing,
     }
+}
+
+fn plane(region: Option<Region>) -> Geometry {
+    region.map_or(Geometry::Nothing, Geometry::Plane)
+}
+
+fn solids(children: &Children) -> Vec<SolidId> {
+    let each = children.each.iter().filter_map(|g| match g {
+        Geometry::Solid(part) => Some(*part),
+        Geometry::Nothing | Geometry::Plane(_) => None,
+    });
+    each.collect()
+}
+
+/// A figure, if it is not empty.
+fn made(
+    figure: Result<Figure, FigureError>,
+    span: &Range<usize>,
+) -> Result<Option<Figure>, SpannedError> {
+    match figure {
+        Ok(figure) => Ok(Some(figure)),
+        Err(FigureError::Empty) => Ok(None),
+        Err(error) => Err(bad_figure(&error, span)),
+    }
+}
+
+/// A solid, if it is not empty.
+fn constructed(
+    part: Result<SolidId, ConstructionError>,
+    span: &Range<usize>,
+) -> Result<Option<SolidId>, SpannedError> {
+    match part {
+        Ok(part) => Ok(Some(part)),
+        Err(error) if error.is_empty() => Ok(None),
+        Err(error) => Err(construction_error(&error, span)),
+    }
+}
+
+/// The error of a construction without an exact result.
+pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>) -> SpannedError {
+    let expected = match error {
+        ConstructionError::NotUnion(_) => "a union of shapes",
+        ConstructionError::NoHull => {
+            "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and \
+             prisms between the same two planes"
+        }
+        ConstructionError::NoSum => {
+            "a ball with any shape, prisms and cylinders of one direction, or convex shapes with \
+             plane faces"
+        }
+        ConstructionError::Elliptic => {
+            "a scale along the axis of a cylinder, equal in all directions, or of plane faces"
+        }
+        ConstructionError::NoProjection(_) => "a result of segments and arcs",
+        _ => "a valid shape",
+    };
+    SpannedError::input(span.clone(), error.to_string(), expected)
 }
 
 fn unknown(name: &str, place: Lexeme) -> SpannedError {
     let reason = match name {
-        "minkowski" | "offset" | "projection" | "resize" | "fill" | "roof" => {
-            "it is not a regularised set operation or a rigid motion"
-        }
-        "import" | "surface" | "polyhedron" | "text" => "it is not one of the primitives",
+        "roof" => "it is not a regularised set operation or a rigid motion",
+        "import" | "surface" | "text" => "it needs another file",
         "translate" | "rotate" | "mirror" | "scale" | "for" | "if" | "module" => {
             "this is not flattened: write the file with `openscad -o part.csg part.scad`"
         }
@@ -247,198 +527,4 @@ fn unknown(name: &str, place: Lexeme) -> SpannedError {
     };
     let found = format!("the node {}", quote(name));
     SpannedError::input(place.span(), found, "a node that can be read").help(reason)
-}
-
-fn revolve(arguments: &mut Arguments, smooth: bool) -> Result<Node, SpannedError> {
-    arguments.bind(&["angle", "start"])?;
-    shapes::check_smooth(arguments, smooth)?;
-    if arguments
-        .find("start")
-        .is_some_and(|start| start.number().is_ok_and(|x| !x.is_zero()))
-    {
-        return Err(arguments.require("start")?.wrong("a `start` of 0"));
-    }
-    let turn = Rational::from(360);
-    let sweep = match arguments.find("angle") {
-        None => None,
-        Some(angle) if *angle.number()? >= turn || *angle.number()? <= -&turn => None,
-        Some(angle) => {
-            let made = RevolutionAngle::new(angle.number()?.clone());
-            Some(made.ok_or_else(|| angle.wrong("an angle greater than 0"))?)
-        }
-    };
-    Ok(extruded(Sweep::Revolved(sweep)))
-}
-
-/// The rows of a 4 by 4 matrix.
-fn rows(argument: &Argument) -> Result<[[Rational; 4]; 4], SpannedError> {
-    let mut matrix: [[Rational; 4]; 4] = Default::default();
-    let rows: &[Argument; 4] = argument.list("a matrix of four rows")?;
-    for (row, argument) in matrix.iter_mut().zip(rows) {
-        let entries: &[Argument; 4] = argument.list("a row of four numbers")?;
-        for (entry, argument) in row.iter_mut().zip(entries) {
-            *entry = argument.number()?.clone();
-        }
-    }
-    let last = [0, 0, 0, 1].map(Rational::from);
-    if matrix[3] != last {
-        return Err(rows[3].wrong("the last row [0, 0, 0, 1] of a rigid motion"));
-    }
-    Ok(matrix)
-}
-
-fn matrix(
-    arguments: &mut Arguments,
-    around: &Around,
-    notes: &mut Notes,
-) -> Result<Node, SpannedError> {
-    arguments.bind(&["m"])?;
-    let argument = arguments.require("m")?;
-    let [a, b, c, _] = rows(argument)?;
-    let split = |[x, y, z, t]: [Rational; 4]| ([x, y, z], t);
-    let ((a, x), (b, y), (c, z)) = (split(a), split(b), split(c));
-    let (linear, offset) = ([a, b, c], [x, y, z]);
-    let found = placement(&linear, offset.clone());
-    if let Ok(placement) = &found
-        && placement.replaces()
-    {
-        notes.snapped(placement.residual, argument.span.clone());
-    }
-    match around {
-        Around::Nothing => Ok(Node::Block {
-            kind: solid_kind(found, &linear, offset, argument)?,
-            around: Around::Nothing,
-        }),
-        Around::Hull(hull) => {
-            let upright = [&linear[0][2], &linear[1][2], &linear[2][0], &linear[2][1]];
-            if hull.is_plane() || !upright.iter().all(|x| x.is_zero()) || !linear[2][2].is_one() {
-                check_plane(&linear, &offset, &argument.span)?;
-            }
-            let inner = match found {
-                Ok(placement) => plane_map(&placement),
-                Err(_) => written_map(&linear, &offset),
-            };
-            let hull = HullFrame {
-                map: inner.then(&hull.map),
-                lift: &hull.lift + &offset[2],
-                ..(**hull).clone()
-            };
-            Ok(Node::Block {
-                kind: Kind::Union,
-                around: Around::Hull(Box::new(hull)),
-            })
-        }
-        Around::Extruded(extrusion) => {
-            check_plane(&linear, &offset, &argument.span)?;
-            let inner = match found {
-                Ok(placement) if extrusion.is_straight() && is_upright(&placement) => {
-                    return Ok(Node::Block {
-                        kind: Kind::Placed(Box::new(placement)),
-                        around: around.clone(),
-                    });
-                }
-                Ok(placement) => plane_map(&placement),
-                Err(_) => written_map(&linear, &offset),
-            };
-            let extrusion = Extrusion {
-                map: inner.then(&extrusion.map),
-                ..(**extrusion).clone()
-            };
-            Ok(Node::Block {
-                kind: Kind::Union,
-                around: Around::Extruded(Box::new(extrusion)),
-            })
-        }
-    }
-}
-
-/// The placement of solids that a matrix stands for, perhaps after a uniform scale.
-fn solid_kind(
-    found: Result<Placement, NotRigid>,
-    linear: &RationalMatrix,
-    offset: [Rational; 3],
-    argument: &Argument,
-) -> Result<Kind, SpannedError> {
-    let reason = match found {
-        Ok(placement) => return Ok(Kind::Placed(Box::new(placement))),
-        Err(reason) => reason,
-    };
-    let refused = || not_rigid(reason, argument.span.clone());
-    let square = linear.iter().map(|row| &row[0] * &row[0]);
-    let square = square.fold(Rational::ZERO, |sum, x| sum + x);
-    let factor = exact_sqrt(&square).or_else(|| rounded_root(&square));
-    let factor = factor
-        .filter(|factor| !factor.is_zero())
-        .ok_or_else(refused)?;
-    let unscaled = linear
-        .each_ref()
-        .map(|row| row.each_ref().map(|x| x / &factor));
-    let placement = placement(&unscaled, offset).map_err(|_| refused())?;
-    Ok(Kind::Scaled(factor, Box::new(placement)))
-}
-
-/// The square root rounded to the six digits that OpenSCAD writes.
-fn rounded_root(square: &Rational) -> Option<Rational> {
-    let root = to_f64(square).sqrt();
-    from_decimal(&format!("{root:.5e}")).ok()
-}
-
-/// Whether a placement keeps the upper side of the plane.
-fn is_upright(placement: &Placement) -> bool {
-    placement.moves.motion().rotation_matrix()[2][2].is_one()
-}
-
-/// The map of the plane of a rigid placement in it.
-fn plane_map(placement: &Placement) -> PlaneMap {
-    let motion = placement.moves.motion();
-    let [[a, b, _], [c, d, _], _] = motion.rotation_matrix();
-    let [x, y, _] = motion.offset().clone();
-    let matrix = match placement.mirrored {
-        true => [[a, -b], [c, -d]],
-        false => [[a, b], [c, d]],
-    };
-    PlaneMap {
-        matrix,
-        offset: [x, y],
-    }
-}
-
-/// The map of the plane that a matrix writes.
-fn written_map([a, b, _]: &RationalMatrix, [x, y, _]: &[Rational; 3]) -> PlaneMap {
-    PlaneMap {
-        matrix: [a, b].map(|row| [row[0].clone(), row[1].clone()]),
-        offset: [x.clone(), y.clone()],
-    }
-}
-
-/// Inside an extrusion only maps of the plane are supported.
-fn check_plane(
-    [a, b, c]: &RationalMatrix,
-    offset: &[Rational; 3],
-    span: &Range<usize>,
-) -> Result<(), SpannedError> {
-    let beyond = [&a[2], &b[2], &c[0], &c[1], &offset[2]];
-    if beyond.iter().all(|x| x.is_zero()) {
-        return Ok(());
-    }
-    let found = "a matrix that leaves the plane, inside an extrusion";
-    Err(SpannedError::input(
-        span.clone(),
-        found,
-        "a map of the xy plane",
-    ))
-}
-
-fn not_rigid(reason: NotRigid, span: Range<usize>) -> SpannedError {
-    let expected = "a rigid motion, perhaps mirrored";
-    match reason {
-        NotRigid::Scaled(factor) => {
-            let found = format!("a matrix that scales by {factor:.6}");
-            SpannedError::input(span, found, expected)
-                .help("give the primitives their final sizes in place of a scale")
-        }
-        NotRigid::Distorted => {
-            SpannedError::input(span, "a matrix that changes lengths or angles", expected)
-        }
-    }
 }

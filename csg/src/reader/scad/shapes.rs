@@ -1,33 +1,22 @@
 //! OpenSCAD's primitives as primitives of the tree.
 
+use std::sync::Arc;
+
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
-use super::super::number::show;
-use super::arguments::Arguments;
-use super::figures::{bad_figure, regular_polygon};
-use super::measures::{MOST_SIDES, MovedPrimitive, Shape, checked, half, length, radius, sides};
-use crate::figure::PlaneMap;
+use super::super::notes::Notes;
+use super::arguments::{Argument, Arguments};
+use super::facets::FacetRule;
+use super::figures::{bad_figure, index, regular_polygon};
+use super::measures::{MovedPrimitive, Shape, checked, half, length, radius};
+use crate::figure::direction;
+use crate::polyhedron::{Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 
 fn shift_z(z: Rational) -> Transform {
     Transform::shift([Rational::ZERO, Rational::ZERO, z])
-}
-
-/// Refuses a node whose `$fn` requests polygons in place of circles, unless `smooth` overrides it.
-pub(super) fn check_smooth(arguments: &Arguments, smooth: bool) -> Result<(), SpannedError> {
-    if sides(arguments, smooth)?.is_none() {
-        return Ok(());
-    }
-    let argument = arguments.require("$fn")?;
-    let found = format!(
-        "{} for `$fn`, which asks for facets",
-        show(argument.number()?)
-    );
-    let expected = format!("0 or more than {MOST_SIDES}, which is read as a smooth surface");
-    Err(SpannedError::input(argument.span.clone(), found, expected)
-        .help("`--smooth` reads every `$fn` as a smooth surface"))
 }
 
 pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
@@ -67,18 +56,26 @@ fn required_radius(arguments: &Arguments) -> Result<Rational, SpannedError> {
     }
 }
 
-pub(super) fn sphere(arguments: &mut Arguments, smooth: bool) -> Result<Shape, SpannedError> {
+pub(super) fn sphere(
+    arguments: &mut Arguments,
+    rule: &mut FacetRule,
+) -> Result<Shape, SpannedError> {
     arguments.bind(&["r", "d"])?;
     let radius = required_radius(arguments)?;
     if radius.is_zero() {
         return Ok(None);
     }
-    check_smooth(arguments, smooth)?;
+    if let Some(sides) = rule.sides(arguments, &radius)? {
+        return faceted_sphere(arguments, &radius, sides).map(Some);
+    }
     let sphere = checked(Primitive::sphere(radius), &arguments.span)?;
     Ok(Some(MovedPrimitive::new(sphere, Transform::new())))
 }
 
-pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape, SpannedError> {
+pub(super) fn cylinder(
+    arguments: &mut Arguments,
+    rule: &mut FacetRule,
+) -> Result<Shape, SpannedError> {
     arguments.bind(&["h", "r1", "r2", "center", "r", "d", "d1", "d2"])?;
     let height = length(arguments.require("h")?, "height")?;
     let both = radius(arguments, "r", "d")?;
@@ -100,7 +97,7 @@ pub(super) fn cylinder(arguments: &mut Arguments, smooth: bool) -> Result<Shape,
     } else {
         Rational::ZERO
     };
-    if let Some(count) = sides(arguments, smooth)? {
+    if let Some(count) = rule.sides(arguments, (&base).max(&top))? {
         return faceted(arguments, [&base, &top], height, lift, count).map(Some);
     }
     let frustum = checked(Primitive::frustum(base, top, height), &arguments.span)?;
@@ -132,16 +129,99 @@ fn faceted(
     ))
 }
 
-/// A disc revolved about the second axis of its plane by a whole turn, if that is a ring torus.
-pub(super) fn ring(arguments: &Arguments, map: &PlaneMap) -> Result<Option<Shape>, SpannedError> {
-    let minor = required_radius(arguments)?;
-    let [x, y] = &map.offset;
-    if minor.is_zero() {
-        return Ok(Some(None));
+/// The largest number of corners of a sphere with flat sides.
+const MAX_SPHERE_CORNERS: usize = 250_000;
+
+/// OpenSCAD's sphere with flat sides: rings of corners at the middles of equal angles.
+fn faceted_sphere(
+    arguments: &Arguments,
+    radius: &Rational,
+    sides: u32,
+) -> Result<MovedPrimitive, SpannedError> {
+    let rings = sides.div_ceil(2);
+    let count = rings as usize * sides as usize;
+    if count > MAX_SPHERE_CORNERS {
+        let error = PolyhedronError::TooManyCorners { count };
+        return Err(bad_polyhedron(&error, arguments));
     }
-    if *x <= minor {
-        return Ok(None);
+    let mut points: Vec<SpacePoint> = Vec::new();
+    for ring in 0..rings {
+        let polar = Rational::from(180 * (2 * ring + 1)) / Rational::from(2 * rings);
+        let [z, r] = direction(&polar).map(|x| x * radius);
+        for k in 0..sides {
+            let turned = Rational::from(360 * k) / Rational::from(sides);
+            let [x, y] = direction(&turned).map(|x| x * &r);
+            points.push([x, y, z.clone()]);
+        }
     }
-    let torus = checked(Primitive::torus(x.clone(), minor), &arguments.span)?;
-    Ok(Some(Some(MovedPrimitive::new(torus, shift_z(y.clone())))))
+    let (rings, sides) = (rings as usize, sides as usize);
+    let last = (rings - 1) * sides;
+    let mut faces = vec![
+        PolyhedronFace::simple((0..sides).collect()),
+        PolyhedronFace::simple((last..last + sides).rev().collect()),
+    ];
+    for ring in 1..rings {
+        for k in 0..sides {
+            let [i, j] = [k, (k + 1) % sides].map(|k| k + (ring - 1) * sides);
+            faces.push(PolyhedronFace::simple(vec![i, i + sides, j + sides, j]));
+        }
+    }
+    let made = Polyhedron::from_faces(&points, &faces);
+    let made = made.map_err(|error| bad_polyhedron(&error, arguments))?;
+    let polyhedron = Arc::new(made.polyhedron);
+    let sphere = Primitive::Polyhedron { polyhedron };
+    Ok(MovedPrimitive::new(sphere, Transform::new()))
+}
+
+fn bad_polyhedron(error: &PolyhedronError, arguments: &Arguments) -> SpannedError {
+    let expected = "closed faces around a solid";
+    SpannedError::input(arguments.span.clone(), error.to_string(), expected)
+}
+
+/// A polyhedron. OpenSCAD's faces run clockwise as seen from the outside.
+pub(super) fn polyhedron(
+    arguments: &mut Arguments,
+    notes: &mut Notes,
+) -> Result<Shape, SpannedError> {
+    arguments.bind(&["points", "faces", "triangles"])?;
+    let list = arguments.require("points")?;
+    let point = |argument: &Argument| -> Result<SpacePoint, SpannedError> {
+        let [x, y, z] = argument.list("a point: a list of three numbers")?;
+        Ok([
+            x.number()?.clone(),
+            y.number()?.clone(),
+            z.number()?.clone(),
+        ])
+    };
+    let points = list.items("a list of points")?.iter().map(point);
+    let points: Vec<SpacePoint> = points.collect::<Result<_, _>>()?;
+    let faces = match arguments.find("faces") {
+        Some(faces) => faces,
+        None => arguments
+            .find("triangles")
+            .map_or_else(|| arguments.require("faces"), Ok)?,
+    };
+    let face = |argument: &Argument| {
+        let corners = argument
+            .items("a face: a list of indices of points")?
+            .iter()
+            .rev();
+        let corners = corners.map(|corner| index(corner, points.len()));
+        Ok(PolyhedronFace::simple(corners.collect::<Result<_, _>>()?))
+    };
+    let faces = faces.items("a list of faces")?.iter().map(face);
+    let faces: Vec<PolyhedronFace> = faces.collect::<Result<_, SpannedError>>()?;
+    let made = match Polyhedron::from_faces(&points, &faces) {
+        Err(PolyhedronError::Empty) => return Ok(None),
+        made => made.map_err(|error| bad_polyhedron(&error, arguments))?,
+    };
+    if made.triangulated > 0 {
+        let count = made.triangulated;
+        let text =
+            format!("{count} faces of a polyhedron are not plane, and were cut into triangles");
+        notes.add(text, arguments.span.clone());
+    }
+    let polyhedron = Arc::new(made.polyhedron);
+    let primitive = Primitive::Polyhedron { polyhedron };
+    Ok(Some(MovedPrimitive::new(primitive, Transform::new())))
 }

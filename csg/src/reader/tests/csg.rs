@@ -120,15 +120,36 @@ fn what_has_no_size_adds_nothing() {
 
 #[test]
 fn small_numbers_of_sides_are_polygons() {
-    for sides in ["3", "12"] {
+    for (sides, corners) in [(3, 6), (12, 72)] {
         let text = format!("sphere($fn = {sides}, r = 5);");
-        assert!(read_text(&text, Format::Csg).is_err());
-        let options = ReadOptions {
-            smooth: true,
-            part: None,
+        let ball = csg(&text);
+        let (_, leaf) = ball.leaves().next().unwrap();
+        let Primitive::Polyhedron { polyhedron } = &leaf.primitive else {
+            panic!("a polyhedron");
         };
-        assert!(read("part", text.as_bytes(), Format::Csg, &options).is_ok());
+        assert_eq!(polyhedron.points().len(), corners);
+        let options = ReadOptions {
+            facets: FacetLimit::None,
+            ..ReadOptions::default()
+        };
+        let round = read("part", text.as_bytes(), Format::Csg, &options).unwrap();
+        let (_, leaf) = round.tree.leaves().next().unwrap();
+        assert!(matches!(leaf.primitive, Primitive::Sphere { .. }));
     }
+    let options = ReadOptions {
+        facets: FacetLimit::All,
+        ..ReadOptions::default()
+    };
+    let all = read("part", b"circle(r = 2);", Format::Csg, &options);
+    assert!(all.is_err());
+    let all = b"linear_extrude(height = 1) { circle($fn = 0, $fa = 12, $fs = 2, r = 2); }";
+    let all = read("part", all, Format::Csg, &options).unwrap().tree;
+    let (_, leaf) = all.leaves().next().unwrap();
+    let Primitive::Prism { figure, .. } = &leaf.primitive else {
+        panic!("a prism");
+    };
+    // 2 pi 2 / 2 is above 6.
+    assert_eq!(figure.edges().len(), 7);
     let ring = "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(r = 1); }";
     let polygonal = format!("rotate_extrude($fn = 8) {{ {ring} }}");
     assert!(read_text(&polygonal, Format::Csg).is_err());

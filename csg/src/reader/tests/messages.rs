@@ -58,30 +58,37 @@ fn expressions() {
 
 #[test]
 fn csg_nodes() {
-    assert_snapshot!(csg("offset() { cube(1); }"), @"part:1:1: found the node `offset`, expected a node that can be read (it is not a regularised set operation or a rigid motion)");
+    assert_snapshot!(csg("roof() { square(1); }"), @"part:1:1: found the node `roof`, expected a node that can be read (it is not a regularised set operation or a rigid motion)");
+    assert_snapshot!(csg("offset() { cube(1); }"), @"part:1:12: found `cube` inside `offset`, expected a plane figure");
+    assert_snapshot!(csg("offset() { square(1); }"), @"part:1:1: found `offset` without `r`, expected the argument `r`");
     assert_snapshot!(csg("group() { cubee(1); }"), @"part:1:11: found the unknown node `cubee`, expected a node that can be read (did you mean `cube`?)");
     assert_snapshot!(csg("translate([1, 0, 0]) cube(1);"), @"part:1:1: found the node `translate`, expected a node that can be read (this is not flattened: write the file with `openscad -o part.csg part.scad`)");
     assert_snapshot!(csg("cube(size = [1, -2, 3]);"), @"part:1:17: found the value -2, expected a size along y of zero or more");
     assert_snapshot!(csg("cube(size = 1, centre = true);"), @"part:1:16: found the unknown argument `centre` of `cube`, expected one of `size`, `center` (did you mean `center`?)");
-    assert_snapshot!(csg("sphere($fn = 5, r = 1);"), @"part:1:14: found the value 5 for `$fn`, which asks for facets, expected 0 or more than 12, which is read as a smooth surface (`--smooth` reads every `$fn` as a smooth surface)");
     assert_snapshot!(csg("sphere(r = undef);"), @"part:1:12: found `undef`, expected a value for `r`");
     assert_snapshot!(csg("sphere(r = nan);"), @"part:1:12: found a number that is not finite, expected a number");
     assert_snapshot!(csg("sphere();"), @"part:1:1: found `sphere` without `r`, expected the argument `r`");
     assert_snapshot!(csg("group() { cube(1);"), @"part:1:19: found the end of the file, expected `}` (the block opened on line 1 is not closed)");
     assert_snapshot!(csg("cube(1)"), @"part:1:8: found the end of the file, expected `;` after a primitive");
     assert_snapshot!(csg("}"), @"part:1:1: found `}`, expected a node");
-    assert_snapshot!(csg("circle(r = 1);"), @"part:1:1: found the plane figure `circle` outside an extrusion, expected a solid");
+    assert_snapshot!(csg("circle(r = 1);"), @"part:1:1: found a plane figure outside an extrusion, expected a solid");
+    assert_snapshot!(csg("square(1); cube(1);"), @"part:1:1: found a plane figure outside an extrusion, expected a solid");
+    assert_snapshot!(csg("group() { square(1); cube(1); }"), @"part:1:22: found `cube` beside a plane figure, expected a plane figure");
     assert_snapshot!(csg("rotate_extrude() { circle(r = 1); }"), @"part:1:20: found a wrong length, expected a figure on one side of the axis");
-    assert_snapshot!(csg("rotate_extrude(angle = 0) { circle(r = 1); }"), @"part:1:24: found the value 0, expected an angle greater than 0");
-    assert_snapshot!(csg("linear_extrude(height = 1, scale = [1, 2]) { square(1); }"), @"part:1:36: found a list, expected the same `scale` along x and y: otherwise the sides are not plane");
-    assert_snapshot!(csg("hull() { sphere(r = 1); cube(1); }"), @"part:1:10: found a hull of other shapes, expected a hull of discs and polygons, or of cylinders, prisms and blocks along z of one height");
-    assert_snapshot!(csg("linear_extrude(height = 1, twist = 90) { square(1); }"), @"part:1:36: found the value 90, expected `twist` of 0: only straight extrusions are read");
+    assert_snapshot!(csg("rotate_extrude(angle = 0) { circle(r = 1); }"), @"part:1:24: found the value 0, expected an angle other than 0");
+    assert_snapshot!(csg("linear_extrude(height = 1, scale = [1, -2]) { square(1); }"), @"part:1:36: found a list, expected a `scale` of zero or more");
+    assert_snapshot!(csg("hull() { sphere(r = 1); cube(1); }"), @"part:1:1: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and prisms between the same two planes");
+    assert_snapshot!(csg("hull() { difference() { cube(2); cube(1); } }"), @"part:1:1: found a hull of a difference or an intersection, expected a union of shapes");
+    assert_snapshot!(csg("minkowski() { cylinder(h = 1, r1 = 1, r2 = 2); cube(1); }"), @"part:1:1: found a Minkowski sum of these shapes, expected a ball with any shape, prisms and cylinders of one direction, or convex shapes with plane faces");
+    assert_snapshot!(csg("projection() { intersection() { sphere(1); cube(1); } }"), @"part:1:1: found a shadow of these shapes, expected a result of segments and arcs");
+    assert_snapshot!(csg("polyhedron(points = [[0,0,0],[1,0,0],[0,1,0]], faces = [[0,1,2]]);"), @"part:1:1: found the faces are not closed: the edge from point 1 to point 0 has no face on its other side, expected closed faces around a solid");
+    assert_snapshot!(csg("polyhedron(points = [[0,0,0],[1,0,0],[0,1,0]], faces = [[0,1,3]]);"), @"part:1:62: found the value 3, expected the index of a point");
 }
 
 #[test]
 fn csg_matrices() {
-    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:12: found a matrix that changes lengths or angles, expected a rigid motion, perhaps mirrored");
-    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) { cube(1); }"), @"part:1:43: found a list, expected the last row [0, 0, 0, 1] of a rigid motion");
+    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { sphere(1); }"), @"part:1:12: found a map that changes the shape of circles, expected a scale along the axis of a cylinder, equal in all directions, or of plane faces");
+    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) { cube(1); }"), @"part:1:43: found a list, expected the last row [0, 0, 0, 1] of an affine map");
     assert_snapshot!(csg("multmatrix([[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:13: found a list of 3, expected a row of four numbers");
 }
 
@@ -90,7 +97,7 @@ fn json_values() {
     assert_snapshot!(json(r#"{"prim":"sphere","r":-1}"#), @"part:1:22: found the value -1, expected a radius greater than zero");
     assert_snapshot!(json(r#"{"prim":"block","size":[1,0,2]}"#), @"part:1:27: found the value 0, expected a size along y greater than zero");
     assert_snapshot!(json(r#"{"prim":"sphere","radius":1}"#), @"part:1:18: found the unknown key `radius`, expected one of `prim`, `transform`, `r` (did you mean `r`?)");
-    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution" (did you mean `sphere`?)"#);
+    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron" (did you mean `sphere`?)"#);
     assert_snapshot!(json(r#"{"op":"union"}"#), @"part:1:14: found an object without `children`, expected the key `children`");
     assert_snapshot!(json(r#"{"op":"union","children":{}}"#), @"part:1:26: found an object, expected an array of solids");
     assert_snapshot!(json(r#"{"op":"union","children":[1]}"#), @"part:1:27: found the number `1`, expected a solid: an object with `op` or `prim`");

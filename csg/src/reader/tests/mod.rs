@@ -67,7 +67,8 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
 
 /// Whether the facets of a polyhedron cover more than half of the directions around a point.
 fn is_enclosed(polyhedron: &Polyhedron, p: [f64; 3]) -> bool {
-    let at = |i: usize| Vector3::from(polyhedron.points()[i].each_ref().map(to_f64)) - Vector3::from(p);
+    let at =
+        |i: usize| Vector3::from(polyhedron.points()[i].each_ref().map(to_f64)) - Vector3::from(p);
     let loops = polyhedron.faces().iter().flat_map(|face| &face.loops);
     let fan = |corners: &Vec<usize>| -> f64 {
         let triangles = (1..corners.len() - 1).map(|k| {

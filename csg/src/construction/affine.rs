@@ -1,0 +1,175 @@
+//! Images of solids under affine maps.
+
+use std::sync::Arc;
+
+use premio_kernel::motion::{Motion, RationalMatrix};
+use premio_kernel::number::rational::{Rational, exact_sqrt};
+
+use super::ConstructionError;
+use super::leaves::{own_corners, polyhedron};
+use crate::builder::{Builder, SolidId};
+use crate::polyhedron::SpacePoint;
+use crate::primitive::Primitive;
+use crate::transform::Transform;
+use crate::tree::{PlacedPrimitive, TreeNode};
+
+/// An affine map of space.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AffineMap {
+    /// The matrix by rows.
+    pub matrix: RationalMatrix,
+    /// The image of the origin.
+    pub offset: SpacePoint,
+}
+
+impl AffineMap {
+    /// The map that multiplies each coordinate by a factor.
+    pub fn scale(factors: &[Rational; 3]) -> Self {
+        let entry = |i: usize, j: usize| match i == j {
+            true => factors[i].clone(),
+            false => Rational::ZERO,
+        };
+        Self {
+            matrix: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
+            offset: std::array::from_fn(|_| Rational::ZERO),
+        }
+    }
+
+    /// This map after a motion.
+    fn after(&self, motion: &Motion) -> Self {
+        let turn = motion.rotation_matrix();
+        let row = |i: usize, v: [&Rational; 3]| {
+            (0..3).fold(Rational::ZERO, |sum, k| sum + &self.matrix[i][k] * v[k])
+        };
+        let column = |j: usize| [&turn[0][j], &turn[1][j], &turn[2][j]];
+        let shift = motion.offset();
+        let origin = [&shift[0], &shift[1], &shift[2]];
+        Self {
+            matrix: std::array::from_fn(|i| std::array::from_fn(|j| row(i, column(j)))),
+            offset: std::array::from_fn(|i| row(i, origin) + &self.offset[i]),
+        }
+    }
+}
+
+/// The image of a solid under an affine map.
+///
+/// Plane faces stay plane. A cylinder, a frustum or a prism may be stretched along its axis, and
+/// anything scaled equally in all directions.
+///
+/// # Errors
+/// The map makes another surface of a primitive, or makes it flat.
+pub fn mapped(
+    builder: &mut Builder,
+    solid: SolidId,
+    map: &AffineMap,
+) -> Result<SolidId, ConstructionError> {
+    let tree = builder.finish(solid)?;
+    let mut images: Vec<SolidId> = vec![SolidId::EMPTY; tree.nodes().len()];
+    // Children follow their parents.
+    for (index, node) in tree.nodes().iter().enumerate().rev() {
+        images[index] = match node {
+            TreeNode::Leaf(placed) => of_leaf(builder, placed, map)?,
+            TreeNode::Operation { op, children } => {
+                let children: Vec<SolidId> = children.iter().map(|c| images[c.index()]).collect();
+                builder.operation(*op, &children)
+            }
+        };
+    }
+    let root = tree.root().map(|root| images[root.index()]);
+    Ok(root.unwrap_or(SolidId::EMPTY))
+}
+
+fn of_leaf(
+    builder: &mut Builder,
+    placed: &PlacedPrimitive,
+    map: &AffineMap,
+) -> Result<SolidId, ConstructionError> {
+    let whole = map.after(&placed.motion);
+    if let Some(stretch) = Stretch::new(&whole)
+        && let Some(primitive) = stretch.apply(&placed.primitive)
+    {
+        let part = builder.primitive(primitive);
+        let part = match stretch.is_mirrored {
+            true => builder.mirrored_y(part),
+            false => part,
+        };
+        return Ok(builder.moved(part, Transform::from_motion(&stretch.motion)));
+    }
+    if own_corners(&placed.primitive).is_none() {
+        return Err(ConstructionError::Elliptic);
+    }
+    let image = polyhedron(&placed.primitive)?.mapped(&whole.matrix, &whole.offset)?;
+    let polyhedron = Arc::new(image);
+    Ok(builder.primitive(Primitive::Polyhedron { polyhedron }))
+}
+
+/// A map that scales the axes by factors before a motion.
+struct Stretch {
+    factors: [Rational; 3],
+    is_mirrored: bool,
+    motion: Motion,
+}
+
+impl Stretch {
+    fn new(map: &AffineMap) -> Option<Self> {
+        let column = |j: usize| [0, 1, 2].map(|i| map.matrix[i][j].clone());
+        let product = |a: &SpacePoint, b: &SpacePoint| {
+            (0..3).fold(Rational::ZERO, |sum, k| sum + &a[k] * &b[k])
+        };
+        let [x, y, z] = [0, 1, 2].map(column);
+        let [xx, yy, zz] = [&x, &y, &z].map(|u| product(u, u));
+        let is_right = [(&x, &y), (&y, &z), (&z, &x)]
+            .into_iter()
+            .all(|(u, v)| product(u, v).is_zero());
+        if !is_right || [&xx, &yy, &zz].iter().any(|square| square.is_zero()) {
+            return None;
+        }
+        let factors = [exact_sqrt(&xx)?, exact_sqrt(&yy)?, exact_sqrt(&zz)?];
+        let [u, v, w] = &factors;
+        let turn = [0, 1, 2].map(|i| [&x[i] / u, &y[i] / v, &z[i] / w]);
+        let proper = Motion::from_matrix(turn.clone(), map.offset.clone());
+        let is_mirrored = proper.is_none();
+        let mirrored = turn.map(|[x, y, z]| [x, -y, z]);
+        let motion = proper.or_else(|| Motion::from_matrix(mirrored, map.offset.clone()))?;
+        Some(Self {
+            factors,
+            is_mirrored,
+            motion,
+        })
+    }
+
+    fn apply(&self, primitive: &Primitive) -> Option<Primitive> {
+        let [s, u, t] = &self.factors;
+        if let Primitive::Block { size: [x, y, z] } = primitive {
+            let size = [x * s, y * u, z * t];
+            return Some(Primitive::Block { size });
+        }
+        if s != u {
+            return None;
+        }
+        if s == t {
+            return Some(primitive.scaled(s));
+        }
+        Some(match primitive {
+            Primitive::Cylinder { radius, height } => Primitive::Cylinder {
+                radius: radius * s,
+                height: height * t,
+            },
+            Primitive::Frustum { base, top, height } => Primitive::Frustum {
+                base: base * s,
+                top: top * s,
+                height: height * t,
+            },
+            Primitive::Prism {
+                figure,
+                height,
+                top,
+            } => Primitive::Prism {
+                figure: Arc::new(figure.scaled(s)),
+                height: height * t,
+                top: top.clone(),
+            },
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Solids constructed from others: convex hulls, Minkowski sums, affine images, sections and
+//! shadows, where these are exact on planes, quadrics of revolution and tori.
+//!
+//! | module | what it gives |
+//! | --- | --- |
+//! | `leaves` | the placed primitives of a union, their corners and their columns |
+//! | `frames` | rotations along given directions |
+//! | `hull` | convex hulls |
+//! | `rounding` | sums with a ball |
+//! | `minkowski` | other sums |
+//! | `affine` | images under affine maps |
+//! | `projection` | sections with the plane z = 0, and shadows on it |
+
+mod affine;
+mod frames;
+mod hull;
+mod leaves;
+mod minkowski;
+mod projection;
+mod rounding;
+
+pub use affine::{AffineMap, mapped};
+pub use hull::convex_hull;
+pub use minkowski::minkowski_sum;
+pub use projection::{section, shadow};
+
+use crate::builder::TreeError;
+use crate::figure::FigureError;
+use crate::polyhedron::PolyhedronError;
+use crate::primitive::PrimitiveError;
+
+/// Why a construction has no exact result.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConstructionError {
+    /// The operand is not a union of primitives.
+    #[error("a {0} of a difference or an intersection")]
+    NotUnion(&'static str),
+    /// The hull has faces that are not on planes, cylinders, cones, spheres or tori.
+    #[error("a hull with faces that are on no plane, cylinder, cone, sphere or torus")]
+    NoHull,
+    /// The sum has other faces, or is not supported.
+    #[error("a Minkowski sum of these shapes")]
+    NoSum,
+    /// The map makes ellipses of circles.
+    #[error("a map that changes the shape of circles")]
+    Elliptic,
+    /// The section or the shadow has other edges than segments and arcs, or is not supported.
+    #[error("a {0} of these shapes")]
+    NoProjection(&'static str),
+    /// A figure of the result is not valid.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A polyhedron of the result is not valid.
+    #[error(transparent)]
+    Polyhedron(#[from] PolyhedronError),
+    /// A primitive of the result is not valid.
+    #[error(transparent)]
+    Primitive(#[from] PrimitiveError),
+    /// The tree exceeds a limit.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+}
+
+impl ConstructionError {
+    /// Whether the result is empty.
+    pub fn is_empty(&self) -> bool {
+        matches!(
+            self,
+            Self::Figure(FigureError::Empty) | Self::Polyhedron(PolyhedronError::Empty)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

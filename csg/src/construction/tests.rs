@@ -1,0 +1,258 @@
+//! Constructions against values derived by hand, and against rays.
+
+use super::*;
+use crate::builder::{Builder, SolidId};
+use crate::evaluate::{EvaluationOptions, evaluate};
+use crate::figure::Figure;
+use crate::primitive::Primitive;
+use crate::ray_casting::RayOracle;
+use crate::transform::{Transform, TransformStep};
+use crate::tree::Operation;
+use premio_kernel::number::rational::Rational;
+use std::f64::consts::PI;
+
+fn n(x: i32) -> Rational {
+    Rational::from(x)
+}
+
+fn block(builder: &mut Builder, size: [i32; 3]) -> SolidId {
+    builder.primitive(Primitive::block(size.map(n)).unwrap())
+}
+
+fn ball(builder: &mut Builder, radius: i32, at: [i32; 3]) -> SolidId {
+    let ball = builder.primitive(Primitive::sphere(n(radius)).unwrap());
+    builder.moved(ball, Transform::shift(at.map(n)))
+}
+
+fn cylinder(builder: &mut Builder, radius: i32, height: i32, at: [i32; 3]) -> SolidId {
+    let part = builder.primitive(Primitive::cylinder(n(radius), n(height)).unwrap());
+    builder.moved(part, Transform::shift(at.map(n)))
+}
+
+fn turned(builder: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
+    let mut moves = Transform::new();
+    let (axis, degrees) = ([n(1), n(2), n(2)], n(degrees));
+    moves.push(TransformStep::Turn { axis, degrees }).unwrap();
+    builder.moved(part, moves)
+}
+
+/// Evaluates a solid, checks its volume and the rays', and returns the kinds of its surfaces.
+#[track_caller]
+fn check(builder: &Builder, part: SolidId, volume: f64) -> Vec<&'static str> {
+    let tree = builder.finish(part).unwrap();
+    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    assert_eq!(known.violations(), []);
+    let found = known.mass().volume;
+    assert!(
+        (found - volume).abs() <= volume * 1e-11,
+        "{found} and not {volume}"
+    );
+    let rays = RayOracle::new(&tree).volume(4096, 1);
+    assert!(
+        rays.deviation(volume, 1e-9) < 6.0,
+        "{rays:?} and not {volume}"
+    );
+    let faces = known.brep.topology.face_ids();
+    let mut kinds: Vec<&str> = faces
+        .map(|face| known.brep.surface(face).kind().name())
+        .collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    kinds
+}
+
+#[test]
+fn a_hull_of_blocks_is_a_polytope() {
+    let mut b = Builder::new();
+    let low = block(&mut b, [4, 4, 1]);
+    let high = block(&mut b, [2, 2, 1]);
+    let high = b.moved(high, Transform::shift([1, 1, 4].map(n)));
+    let hull = convex_hull(&mut b, &[low, high]).unwrap();
+    // The lower slab, and a frustum of a pyramid from there to the top of the upper one.
+    let frustum = 4.0 / 3.0 * (16.0 + 4.0 + 8.0);
+    assert_eq!(check(&b, hull, 16.0 + frustum), ["plane"]);
+}
+
+#[test]
+fn balls_of_two_radii_have_a_cone_between_them() {
+    let mut b = Builder::new();
+    for [x, z] in [[30, 10], [3, 4], [0, -9]] {
+        let one = ball(&mut b, 6, [1, 2, 3]);
+        let two = ball(&mut b, 3, [1 + x, 2, 3 + z]);
+        let hull = convex_hull(&mut b, &[one, two]).unwrap();
+        let (r, s, d) = (6.0, 3.0, f64::from(x).hypot(f64::from(z)));
+        if d <= r - s {
+            continue;
+        }
+        // Two caps and a frustum; the circles of contact lie at r sin and s sin, where sin = (r -
+        // s) / d.
+        let sin = (r - s) / d;
+        let cos = (1.0 - sin * sin).sqrt();
+        let height = d - (r - s) * sin;
+        let frustum = PI * height / 3.0 * cos * cos * (r * r + r * s + s * s);
+        let cap = |r: f64, h: f64| PI * h * h * (3.0 * r - h) / 3.0;
+        let volume = frustum + cap(r, r * (1.0 + sin)) + cap(s, s * (1.0 - sin));
+        assert_eq!(check(&b, hull, volume), ["cone", "sphere"]);
+    }
+}
+
+#[test]
+fn balls_of_one_radius_round_a_box() {
+    for degrees in [0, 37] {
+        let mut b = Builder::new();
+        let corners = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2 & 1]);
+        let balls: Vec<SolidId> = corners
+            .map(|[x, y, z]| ball(&mut b, 1, [10 * x, 6 * y, 4 * z]))
+            .collect();
+        let union = b.operation(Operation::Union, &balls);
+        let union = turned(&mut b, union, degrees);
+        let hull = convex_hull(&mut b, &[union]).unwrap();
+        let volume = 240.0 + 2.0 * (60.0 + 40.0 + 24.0) + PI * (10.0 + 6.0 + 4.0) + 4.0 * PI / 3.0;
+        assert_eq!(check(&b, hull, volume), ["cylinder", "plane", "sphere"]);
+    }
+}
+
+#[test]
+fn balls_in_a_plane_round_a_plate() {
+    let mut b = Builder::new();
+    let corners = [[0, 0, 0], [6, 0, 2], [0, 5, 0]];
+    let balls = corners.map(|at| ball(&mut b, 1, at));
+    let hull = convex_hull(&mut b, &balls).unwrap();
+    let [a, c, d] = [40f64.sqrt(), 5.0, 65f64.sqrt()];
+    let area = 0.5 * (10f64.powi(2) + 30f64.powi(2)).sqrt();
+    let volume = 2.0 * area + PI / 2.0 * (a + c + d) + 4.0 * PI / 3.0;
+    assert_eq!(check(&b, hull, volume), ["cylinder", "plane", "sphere"]);
+}
+
+#[test]
+fn cylinders_between_two_planes_have_a_slot_as_hull() {
+    for degrees in [0, 23] {
+        let mut b = Builder::new();
+        let one = cylinder(&mut b, 2, 3, [0, 0, 1]);
+        let two = cylinder(&mut b, 2, 3, [9, 0, 1]);
+        let union = b.operation(Operation::Union, &[one, two]);
+        let union = turned(&mut b, union, degrees);
+        let hull = convex_hull(&mut b, &[union]).unwrap();
+        assert_eq!(
+            check(&b, hull, 3.0 * (36.0 + 4.0 * PI)),
+            ["cylinder", "plane"]
+        );
+    }
+    let mut b = Builder::new();
+    let one = cylinder(&mut b, 2, 3, [0, 0, 1]);
+    let two = cylinder(&mut b, 2, 4, [9, 0, 1]);
+    let refused = convex_hull(&mut b, &[one, two]);
+    assert_eq!(refused, Err(ConstructionError::NoHull));
+}
+
+#[test]
+fn what_is_round_about_an_axis_has_a_round_hull() {
+    let mut b = Builder::new();
+    let disc = cylinder(&mut b, 5, 1, [0, 0, 0]);
+    let pin = cylinder(&mut b, 1, 1, [0, 0, 4]);
+    let both = b.operation(Operation::Union, &[disc, pin]);
+    let both = turned(&mut b, both, 61);
+    let hull = convex_hull(&mut b, &[both]).unwrap();
+    // A disc, and a frustum from radius 5 at height 1 to the top of the pin.
+    let frustum = PI * 4.0 / 3.0 * (25.0 + 5.0 + 1.0);
+    assert_eq!(
+        check(&b, hull, 25.0 * PI + frustum),
+        ["cone", "cylinder", "plane"]
+    );
+}
+
+#[test]
+fn sums_with_a_ball() {
+    let mut b = Builder::new();
+    let unit = ball(&mut b, 1, [0, 0, 0]);
+    let part = block(&mut b, [4, 3, 2]);
+    let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
+    let volume = 24.0 + 2.0 * (12.0 + 8.0 + 6.0) + PI * 9.0 + 4.0 * PI / 3.0;
+    assert_eq!(check(&b, sum, volume), ["cylinder", "plane", "sphere"]);
+    // A coin with a half round rim.
+    let coin = cylinder(&mut b, 5, 2, [0, 0, 0]);
+    let sum = minkowski_sum(&mut b, &[unit, coin]).unwrap();
+    let rim = PI * PI * 5.0 + 4.0 / 3.0 * PI;
+    let volume = 25.0 * PI * 4.0 + PI * (36.0 - 25.0) * 2.0 + rim;
+    assert_eq!(check(&b, sum, volume), ["cylinder", "plane", "torus"]);
+    let larger = ball(&mut b, 2, [7, 0, 0]);
+    let sum = minkowski_sum(&mut b, &[unit, larger]).unwrap();
+    assert_eq!(check(&b, sum, 36.0 * PI), ["sphere"]);
+}
+
+#[test]
+fn a_bracket_is_rounded() {
+    let corners = [[0, 0], [6, 0], [6, 2], [2, 2], [2, 6], [0, 6]].map(|p| p.map(n));
+    let figure = Figure::polygon(&[corners.to_vec()]).unwrap();
+    let mut b = Builder::new();
+    let part = b.primitive(Primitive::prism(figure, n(3)).unwrap());
+    let unit = ball(&mut b, 1, [0, 0, 0]);
+    let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
+    let tree = b.finish(sum).unwrap();
+    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    assert_eq!(known.violations(), []);
+    let rays = RayOracle::new(&tree).volume(1 << 15, 1);
+    assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
+}
+
+#[test]
+fn sums_of_columns_and_of_polytopes() {
+    let mut b = Builder::new();
+    let plate = block(&mut b, [50, 20, 6]);
+    let tool = cylinder(&mut b, 4, 1, [0, 0, 0]);
+    let sum = minkowski_sum(&mut b, &[plate, tool]).unwrap();
+    let area = 1000.0 + 2.0 * 4.0 * 70.0 + 16.0 * PI;
+    assert_eq!(check(&b, sum, 7.0 * area), ["cylinder", "plane"]);
+    let tilted = block(&mut b, [1, 1, 1]);
+    let tilted = turned(&mut b, tilted, 30);
+    let plate = block(&mut b, [5, 4, 3]);
+    let sum = minkowski_sum(&mut b, &[plate, tilted]).unwrap();
+    let tree = b.finish(sum).unwrap();
+    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let rays = RayOracle::new(&tree).volume(1 << 14, 1);
+    assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
+}
+
+#[test]
+fn plane_faces_take_any_scale() {
+    let mut b = Builder::new();
+    let part = block(&mut b, [1, 2, 3]);
+    let tilted = turned(&mut b, part, 40);
+    let scale = AffineMap::scale(&[2, 3, 5].map(n));
+    for part in [part, tilted] {
+        let image = mapped(&mut b, part, &scale).unwrap();
+        assert_eq!(check(&b, image, 180.0), ["plane"]);
+    }
+    let post = cylinder(&mut b, 1, 2, [0, 0, 0]);
+    let long = mapped(&mut b, post, &AffineMap::scale(&[2, 2, 5].map(n))).unwrap();
+    assert_eq!(check(&b, long, 40.0 * PI), ["cylinder", "plane"]);
+    let oval = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 1].map(n)));
+    assert_eq!(oval, Err(ConstructionError::Elliptic));
+    let flat = mapped(&mut b, part, &AffineMap::scale(&[2, 1, 0].map(n)));
+    assert!(flat.is_err_and(|error| error.is_empty()));
+}
+
+#[test]
+fn sections_and_shadows() {
+    let mut b = Builder::new();
+    let plate = block(&mut b, [40, 30, 10]);
+    let bore = cylinder(&mut b, 8, 20, [20, 15, -1]);
+    let part = b.operation(Operation::Difference, &[plate, bore]);
+    let area = 1200.0 - 64.0 * PI;
+    let down = b.moved(part, Transform::shift([0, 0, -5].map(n)));
+    let close = |found: f64, area: f64| assert!((found - area).abs() < 1e-9, "{found} {area}");
+    close(section(&b, down).unwrap().area(), area);
+    close(shadow(&b, down).unwrap().area(), area);
+    let above = b.moved(part, Transform::shift([0, 0, 1].map(n)));
+    assert!(section(&b, above).is_err_and(|error| error.is_empty()));
+    let unit = ball(&mut b, 5, [0, 0, 3]);
+    close(section(&b, unit).unwrap().area(), 16.0 * PI);
+    close(shadow(&b, unit).unwrap().area(), 25.0 * PI);
+    let cube = block(&mut b, [1, 1, 1]);
+    let diagonal = turned(&mut b, cube, 0);
+    close(shadow(&b, diagonal).unwrap().area(), 1.0);
+    let wedge = b.primitive(Primitive::wedge([4, 3, 2].map(n)).unwrap());
+    let low = b.moved(wedge, Transform::shift([0, 0, -1].map(n)));
+    close(section(&b, low).unwrap().area(), 6.0);
+    close(shadow(&b, low).unwrap().area(), 12.0);
+}

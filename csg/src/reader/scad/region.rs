@@ -1,0 +1,178 @@
+//! Regions of the plane: figures, and set operations on them.
+//!
+//! Extruding commutes with set operations, so an extrusion makes a solid of each figure. Where one
+//! figure is needed, the operations are evaluated in the plane.
+
+use std::ops::Range;
+
+use super::super::error::SpannedError;
+use super::figures::bad_figure;
+use crate::figure::{Figure, FigureError, FigureExpression, FigureOperation, PlaneMap};
+use crate::transform::Transform;
+
+/// A figure that a node makes.
+#[derive(Debug, Clone)]
+pub(super) struct RegionFigure {
+    /// The figure in its own frame.
+    pub base: Figure,
+    /// The map to the plane.
+    pub map: PlaneMap,
+    /// The same map as a motion, if it is one.
+    pub moves: Option<Transform>,
+    /// The place of its node.
+    pub span: Range<usize>,
+}
+
+/// A region of the plane.
+#[derive(Debug, Clone)]
+pub(super) enum Region {
+    Figure(Box<RegionFigure>),
+    Combined {
+        op: FigureOperation,
+        operands: Vec<Region>,
+        /// The number of operations inside each other.
+        depth: usize,
+    },
+}
+
+/// The most operations inside each other that are kept; more are evaluated in the plane.
+const MAX_DEPTH: usize = 32;
+
+impl RegionFigure {
+    /// The figure in its final place.
+    pub fn figure(&self) -> Result<Figure, SpannedError> {
+        let made = match self.map.is_identity() {
+            true => Ok(self.base.clone()),
+            false => self.base.mapped(&self.map),
+        };
+        made.map_err(|error| bad_figure(&error, &self.span))
+    }
+}
+
+impl Region {
+    pub fn new(figure: Figure, span: Range<usize>) -> Self {
+        Self::Figure(Box::new(RegionFigure {
+            base: figure,
+            map: PlaneMap::identity(),
+            moves: Some(Transform::new()),
+            span,
+        }))
+    }
+
+    fn depth(&self) -> usize {
+        match self {
+            Self::Figure(_) => 0,
+            Self::Combined { depth, .. } => *depth,
+        }
+    }
+
+    /// The place of its first figure.
+    pub fn span(&self) -> Range<usize> {
+        match self {
+            Self::Figure(figure) => figure.span.clone(),
+            Self::Combined { operands, .. } => operands.first().map_or(0..0, Self::span),
+        }
+    }
+
+    /// The image under a map, which is a motion if `moves` says so.
+    pub fn mapped(self, map: &PlaneMap, moves: Option<&Transform>) -> Self {
+        match self {
+            Self::Figure(figure) => Self::Figure(Box::new(RegionFigure {
+                map: figure.map.then(map),
+                moves: figure
+                    .moves
+                    .zip(moves)
+                    .map(|(own, moves)| own.then(moves.clone())),
+                ..*figure
+            })),
+            Self::Combined {
+                op,
+                operands,
+                depth,
+            } => Self::Combined {
+                op,
+                operands: operands.into_iter().map(|r| r.mapped(map, moves)).collect(),
+                depth,
+            },
+        }
+    }
+
+    /// An operation on regions, of which some may be empty.
+    pub fn combined(
+        op: FigureOperation,
+        operands: Vec<Option<Self>>,
+    ) -> Result<Option<Self>, SpannedError> {
+        let is_empty = match op {
+            FigureOperation::Union => false,
+            FigureOperation::Intersection => operands.iter().any(Option::is_none),
+            FigureOperation::Difference => operands.first().is_none_or(Option::is_none),
+        };
+        let mut operands: Vec<Self> = operands.into_iter().flatten().collect();
+        if is_empty || operands.is_empty() {
+            return Ok(None);
+        }
+        if operands.len() == 1 {
+            return Ok(operands.pop());
+        }
+        let depth = 1 + operands.iter().map(Self::depth).max().unwrap_or(0);
+        let region = Self::Combined {
+            op,
+            operands,
+            depth,
+        };
+        match depth > MAX_DEPTH {
+            true => {
+                let span = region.span();
+                Ok(region
+                    .evaluated(&span)?
+                    .map(|figure| Self::new(figure, span)))
+            }
+            false => Ok(Some(region)),
+        }
+    }
+
+    /// The figures of a union, each in its place; `None` if there is another operation.
+    pub fn figures(&self) -> Result<Option<Vec<Figure>>, SpannedError> {
+        match self {
+            Self::Figure(figure) => Ok(Some(vec![figure.figure()?])),
+            Self::Combined {
+                op: FigureOperation::Union,
+                operands,
+                ..
+            } => {
+                let each = operands.iter().map(Self::figures);
+                let each: Option<Vec<Vec<Figure>>> = each.collect::<Result<_, _>>()?;
+                Ok(each.map(|each| each.concat()))
+            }
+            Self::Combined { .. } => Ok(None),
+        }
+    }
+
+    /// The region as one figure; `None` if it is empty.
+    pub fn evaluated(&self, span: &Range<usize>) -> Result<Option<Figure>, SpannedError> {
+        if let Self::Figure(figure) = self {
+            return figure.figure().map(Some);
+        }
+        let mut figures = Vec::new();
+        let expression = self.expression(&mut figures)?;
+        match Figure::evaluated(&figures.iter().collect::<Vec<_>>(), &expression) {
+            Ok(figure) => Ok(Some(figure)),
+            Err(FigureError::Empty) => Ok(None),
+            Err(error) => Err(bad_figure(&error, span)),
+        }
+    }
+
+    fn expression(&self, figures: &mut Vec<Figure>) -> Result<FigureExpression, SpannedError> {
+        match self {
+            Self::Figure(figure) => {
+                figures.push(figure.figure()?);
+                Ok(FigureExpression::Leaf(figures.len() - 1))
+            }
+            Self::Combined { op, operands, .. } => {
+                let each = operands.iter().map(|operand| operand.expression(figures));
+                let each = each.collect::<Result<_, _>>()?;
+                Ok(FigureExpression::Combined(*op, each))
+            }
+        }
+    }
+}

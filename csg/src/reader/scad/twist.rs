@@ -1,0 +1,232 @@
+//! Solids that OpenSCAD makes of slices: twisted or unevenly scaled extrusions, and revolutions with
+//! flat sides. They are the polyhedra that OpenSCAD means, with exact corners.
+
+use std::ops::Range;
+
+use premio_kernel::number::rational::{Rational, from_f64, to_f64};
+
+use super::super::error::SpannedError;
+use super::arguments::Arguments;
+use super::facets::fragments;
+use crate::figure::{ArcTurn, Figure, FigureEdge, FigurePoint, direction};
+use crate::polyhedron::{
+    MAX_CORNERS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, index_loops,
+};
+
+/// How an extrusion is cut into slices.
+pub(super) struct Twist {
+    /// The angle of the top in degrees, clockwise as seen from above.
+    degrees: Rational,
+    slices: usize,
+}
+
+/// The largest number of slices.
+const MAX_SLICES: f64 = 10_000.0;
+
+impl Twist {
+    /// The slices of an extrusion; `None` if its sides are plane.
+    pub fn new(arguments: &Arguments, top: &[Rational; 2]) -> Result<Option<Self>, SpannedError> {
+        let degrees = match arguments.find("twist") {
+            Some(twist) => twist.number()?.clone(),
+            None => Rational::ZERO,
+        };
+        if degrees.is_zero() && top[0] == top[1] {
+            return Ok(None);
+        }
+        let slices = match arguments.find("slices") {
+            Some(slices) => to_f64(slices.number()?),
+            None => {
+                let turn = to_f64(&degrees).abs() / 360.0;
+                (turn * fragments(arguments, 1.0)?).ceil()
+            }
+        };
+        let slices = slices.clamp(1.0, MAX_SLICES) as usize;
+        Ok(Some(Self { degrees, slices }))
+    }
+}
+
+/// The error of slices that bound no solid.
+fn bad_slices(error: &PolyhedronError, span: &Range<usize>) -> SpannedError {
+    SpannedError::input(
+        span.clone(),
+        error.to_string(),
+        "an extrusion with a volume",
+    )
+}
+
+/// The contours of a figure as polygons: arcs are cut as OpenSCAD cuts circles.
+fn polygons(figure: &Figure, arguments: &Arguments) -> Result<Vec<Vec<FigurePoint>>, SpannedError> {
+    let mut all = Vec::new();
+    for contour in figure.contours() {
+        let mut points = Vec::new();
+        for edge in contour {
+            points.extend(chords(edge, arguments)?);
+        }
+        all.push(points);
+    }
+    Ok(all)
+}
+
+/// The start of an edge, and the corners of the chords that stand for its arc.
+fn chords(edge: &FigureEdge, arguments: &Arguments) -> Result<Vec<FigurePoint>, SpannedError> {
+    let mut points = vec![edge.start.clone()];
+    let Some(arc) = &edge.arc else {
+        return Ok(points);
+    };
+    let radius = to_f64(&arc.radius);
+    let turned = to_f64(&edge.degrees());
+    let count = (fragments(arguments, radius)? * turned / 360.0)
+        .ceil()
+        .max(1.0);
+    let [x, y] = [0, 1].map(|i| to_f64(&(&edge.start[i] - &arc.centre[i])));
+    let sign = match arc.turn {
+        ArcTurn::Counterclockwise => 1.0,
+        ArcTurn::Clockwise => -1.0,
+    };
+    for k in 1..count as usize {
+        let angle = y.atan2(x) + sign * (turned * k as f64 / count).to_radians();
+        let (sin, cos) = angle.sin_cos();
+        let at = [cos, sin].map(|c| from_f64(radius * c).unwrap_or_default());
+        points.push([0, 1].map(|i| &arc.centre[i] + &at[i]));
+    }
+    Ok(points)
+}
+
+/// Whether a polygon runs clockwise.
+fn is_clockwise(outline: &[FigurePoint]) -> bool {
+    let next = outline.iter().cycle().skip(1);
+    let area = outline
+        .iter()
+        .zip(next)
+        .fold(Rational::ZERO, |sum, (p, q)| {
+            sum + (&p[0] * &q[1] - &p[1] * &q[0])
+        });
+    area < Rational::ZERO
+}
+
+/// The polyhedron of an extrusion with slices. A side between two slices is cut as OpenSCAD 2021.01
+/// does: from its lower end to its upper start, and the other way in holes and if the twist is
+/// negative.
+pub(super) fn twisted(
+    figure: &Figure,
+    height: &Rational,
+    top: &[Rational; 2],
+    twist: &Twist,
+    arguments: &Arguments,
+) -> Result<Polyhedron, SpannedError> {
+    let outlines = polygons(figure, arguments)?;
+    let corners: usize = outlines.iter().map(Vec::len).sum();
+    let count = corners.saturating_mul(6 * twist.slices);
+    if count > MAX_CORNERS {
+        let error = PolyhedronError::TooManyCorners { count };
+        return Err(bad_slices(&error, &arguments.span));
+    }
+    let ring = |slice: usize| {
+        let t = Rational::from(slice) / Rational::from(twist.slices);
+        let [cos, sin] = direction(&(-&twist.degrees * &t));
+        let factor = top
+            .each_ref()
+            .map(|k| Rational::ONE + (k - Rational::ONE) * &t);
+        let z = height * &t;
+        let place = move |[x, y]: &FigurePoint| -> SpacePoint {
+            // The slice is scaled and then turned.
+            let [x, y] = [x * &factor[0], y * &factor[1]];
+            [&cos * &x - &sin * &y, &sin * &x + &cos * &y, z.clone()]
+        };
+        outlines.iter().flatten().map(place).collect::<Vec<_>>()
+    };
+    let rings: Vec<Vec<SpacePoint>> = (0..=twist.slices).map(ring).collect();
+    let count = rings[0].len();
+    let points = rings.concat();
+    let mut faces = Vec::new();
+    let loops = index_loops(outlines.iter().map(Vec::len));
+    let is_back = twist.degrees < Rational::ZERO;
+    for (corners, outline) in loops.iter().zip(&outlines) {
+        let is_hole = is_clockwise(outline);
+        for slice in 0..twist.slices {
+            let next = corners.iter().cycle().skip(1);
+            for (&i, &j) in corners.iter().zip(next) {
+                let [a, b] = [i, j].map(|k| k + slice * count);
+                let [d, c] = [a, b].map(|k| k + count);
+                let triangles = match is_back != is_hole {
+                    true => [vec![a, b, c], vec![a, c, d]],
+                    false => [vec![a, b, d], vec![b, c, d]],
+                };
+                faces.extend(triangles.map(PolyhedronFace::simple));
+            }
+        }
+    }
+    let backwards = |corners: &Vec<usize>| corners.iter().rev().copied().collect();
+    let base = loops.iter().map(backwards).collect();
+    let up = |corners: &Vec<usize>| corners.iter().map(|i| i + count * twist.slices).collect();
+    let lid = loops.iter().map(up).collect();
+    faces.extend([base, lid].map(|loops| PolyhedronFace { loops }));
+    let made = Polyhedron::from_faces(&points, &faces);
+    Ok(made
+        .map_err(|error| bad_slices(&error, &arguments.span))?
+        .polyhedron)
+}
+
+/// The polyhedron of a revolution with flat sides, by an angle in degrees or a whole turn. A whole
+/// turn starts on the negative x axis, as in OpenSCAD, unless its start is written.
+pub(super) fn revolved_polygon(
+    figure: &Figure,
+    sides: u32,
+    degrees: Option<&Rational>,
+    is_started: bool,
+    span: &Range<usize>,
+) -> Result<Polyhedron, SpannedError> {
+    if figure.crosses_axis() || !figure.is_polygon() {
+        let found = "a figure that crosses the axis or has arcs";
+        let expected = "a polygon on one side of the axis, for a revolution with flat sides";
+        return Err(SpannedError::input(span.clone(), found, expected));
+    }
+    let whole = Rational::from(360);
+    let angle = degrees.unwrap_or(&whole);
+    let share = to_f64(&(Rational::from(sides) * angle / &whole))
+        .floor()
+        .max(1.0) as usize;
+    let outline: Vec<&FigurePoint> = figure.edges().iter().map(|edge| &edge.start).collect();
+    let count = outline.len().saturating_mul(4 * share);
+    if count > MAX_CORNERS {
+        return Err(bad_slices(&PolyhedronError::TooManyCorners { count }, span));
+    }
+    let first = match degrees.is_none() && !is_started {
+        true => Rational::from(180),
+        false => Rational::ZERO,
+    };
+    let rings = share + usize::from(degrees.is_some());
+    let mut points: Vec<SpacePoint> = Vec::new();
+    for k in 0..rings {
+        let at = angle * Rational::from(k) / Rational::from(share) + &first;
+        let [cos, sin] = direction(&at);
+        points.extend(outline.iter().map(|[r, z]| [r * &cos, r * &sin, z.clone()]));
+    }
+    let mut faces = Vec::new();
+    let loops = index_loops(figure.contours().map(<[FigureEdge]>::len));
+    let count = outline.len();
+    for corners in &loops {
+        for k in 0..share {
+            let next = corners.iter().cycle().skip(1);
+            for (&i, &j) in corners.iter().zip(next) {
+                let [from, to] = [k, (k + 1) % rings].map(|k| k * count);
+                faces.push(PolyhedronFace::simple(vec![
+                    i + from,
+                    i + to,
+                    j + to,
+                    j + from,
+                ]));
+            }
+        }
+    }
+    if degrees.is_some() {
+        let up = |corners: &Vec<usize>| {
+            let last = corners.iter().rev().map(|i| i + share * count);
+            last.collect::<Vec<usize>>()
+        };
+        let ends = [loops.clone(), loops.iter().map(up).collect()];
+        faces.extend(ends.map(|loops| PolyhedronFace { loops }));
+    }
+    let made = Polyhedron::from_faces(&points, &faces);
+    Ok(made.map_err(|error| bad_slices(&error, span))?.polyhedron)
+}

@@ -6,7 +6,7 @@ mod matching;
 mod predict;
 mod sheet;
 
-use crate::session::InputLimits;
+use crate::session::{InputLimits, SessionIncludes};
 pub use camera::{CameraChoice, CameraOptions};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -16,7 +16,7 @@ pub use predict::{
     AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions, ModelOutput,
     ModelRunOptions, PredictOptions, RecordsFormat, RenderOptions, SchemaName, SchemaOptions,
 };
-use premio_csg::reader::{FacetLimit, ReadOptions};
+use premio_csg::reader::{FacetLimit, Includes, ReadOptions, ValueOverride};
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetArguments, ViewName};
 use std::path::{Path, PathBuf};
@@ -165,6 +165,16 @@ pub struct ReadingOptions {
     /// The same as `--facets none`
     #[arg(long, conflicts_with = "facets")]
     pub smooth: bool,
+    #[command(flatten)]
+    pub define: DefineOptions,
+}
+
+/// The values that override those of a description.
+#[derive(Clone, Debug, Default, Args)]
+pub struct DefineOptions {
+    /// Another value for a number that a .padl file sets: an expression, as in L=2*40; repeatable
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = value_override)]
+    pub overrides: Vec<ValueOverride>,
 }
 
 impl ReadingOptions {
@@ -176,13 +186,27 @@ impl ReadingOptions {
         }
     }
 
-    /// The options of the readers.
-    pub fn options(&self) -> ReadOptions {
+    /// The options of the readers, which include files within the limits.
+    pub fn options(&self, limits: InputLimits) -> ReadOptions {
         ReadOptions {
             facets: self.facets(),
             part: self.part.clone(),
+            overrides: self.define.overrides.clone(),
+            includes: Includes::new(SessionIncludes::new(limits)),
         }
     }
+}
+
+/// A name and its value.
+fn value_override(text: &str) -> Result<ValueOverride, String> {
+    let (name, value) = match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => (name.trim(), value.trim()),
+        _ => return Err("expected a name and its value, as L=80".to_owned()),
+    };
+    Ok(ValueOverride {
+        name: name.to_owned(),
+        value: value.to_owned(),
+    })
 }
 
 /// The output of text.

@@ -5,6 +5,16 @@ use crate::diagnostics::CliError;
 use crate::fuzz::archive::MANIFEST;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The outputs of the command.
+static OUTPUTS: OnceLock<Vec<Identity>> = OnceLock::new();
+
+/// Whether a file is an output of the command.
+pub fn is_output(path: &Path) -> bool {
+    let outputs = OUTPUTS.get().map_or(&[][..], Vec::as_slice);
+    identity(path).is_some_and(|identity| outputs.contains(&identity))
+}
 
 /// The option with a folder of many outputs.
 const MODELS: &str = "--write";
@@ -188,6 +198,15 @@ impl Files {
             }
             known.push((output, identity));
         }
+        self.check_inputs(&known)?;
+        // A description may include files that are not on the command line.
+        let identities = known.into_iter().map(|(_, identity)| identity);
+        let _ = OUTPUTS.set(identities.collect());
+        Ok(())
+    }
+
+    /// Checks that no output is an input, or standard output.
+    fn check_inputs(&self, known: &[(&Named, Identity)]) -> Result<(), CliError> {
         let stdout = stdout_identity();
         for input in &self.inputs {
             let Some(identity) = identity(&input.path) else {

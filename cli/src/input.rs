@@ -1,6 +1,6 @@
 //! Reading descriptions and evaluating them.
 
-use crate::arguments::DescriptionOptions;
+use crate::arguments::{DefineOptions, DescriptionOptions, ReadingOptions};
 use crate::diagnostics::{CliError, Reporter};
 use crate::session::Session;
 use premio::shards::language;
@@ -48,7 +48,8 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         true => Arithmetic::Extended,
         false => Arithmetic::Filtered,
     };
-    let part = evaluated(name, format, written, digits, voice)?;
+    let how = options.reading.options(session.limits);
+    let part = evaluated(name, format, written, &how, digits, voice)?;
     if let Some(recovery) = part.solid.recovery() {
         let text = recovery_note(recovery);
         if options.strict {
@@ -69,10 +70,18 @@ fn recovery_note(recovery: &Recovery) -> String {
     format!("{recovery} (`--exact` and `--resolution` take the coordinates as written)")
 }
 
-/// The part of a description, read with the default options.
-pub fn described(path: &Path, session: Session) -> Result<EvaluatedPart, CliError> {
+/// The part of a description, with other values and the default options.
+pub fn described(
+    path: &Path,
+    define: &DefineOptions,
+    session: Session,
+) -> Result<EvaluatedPart, CliError> {
     let options = DescriptionOptions {
         file: path.to_owned(),
+        reading: ReadingOptions {
+            define: define.clone(),
+            ..ReadingOptions::default()
+        },
         ..DescriptionOptions::default()
     };
     part(&options, session)
@@ -87,7 +96,13 @@ pub fn part_of_model(
     let format = language(&written).map_err(|e| CliError::input(format!("{name}: {e}")))?;
     // Positions in it are not positions in the model.
     let name = format!("{name} (its description)");
-    evaluated(name, format, written, Arithmetic::Filtered, voice)
+    let facets = FacetLimit::from_record(written.smooth, written.facets.as_deref());
+    let how = ReadOptions {
+        facets: facets.map_err(|error| CliError::input(format!("{name}: {error}")))?,
+        part: written.part.clone(),
+        ..ReadOptions::default()
+    };
+    evaluated(name, format, written, &how, Arithmetic::Filtered, voice)
 }
 
 /// The reader's error of bytes that are not text.
@@ -101,41 +116,33 @@ fn not_a_text(name: &str, format: Format, bytes: &[u8]) -> Result<String, CliErr
 fn evaluated(
     name: String,
     format: Format,
-    written: Written,
+    mut written: Written,
+    how: &ReadOptions,
     digits: Arithmetic,
     voice: Reporter,
 ) -> Result<EvaluatedPart, CliError> {
     let started = Instant::now();
-    let how = ReadOptions {
-        facets: FacetLimit::from_record(written.smooth, written.facets.as_deref())
-            .map_err(|error| CliError::described(&name, error.into(), written.text.as_bytes()))?,
-        part: written.part.clone(),
-    };
     let text = written.text.as_bytes();
     let working = voice.working("reading");
     let refused = |error| CliError::described(&name, error, text);
-    let expression = premio::read_bytes(&name, text, format, &how).map_err(refused)?;
+    let expression = premio::read_bytes(&name, text, format, how).map_err(refused)?;
     expression.tree().map_err(refused)?;
     drop(working);
     voice.notes(&name, text, &expression.notes());
     let read = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let how = EvaluationOptions {
-        resolution: written.resolution,
-        zeros: match written.exact {
-            true => CoincidencePolicy::Exact,
-            false => CoincidencePolicy::ByResolution,
-        },
-        digits,
-        ..EvaluationOptions::default()
-    };
     let working = voice.working("finding the boundary");
+    let how = evaluation_options(&written, digits);
     let solid = expression.evaluate_with(&how).map_err(refused)?;
     drop(working);
     if solid.is_empty() {
         voice.note(&name, EMPTY);
     }
     let evaluate = started.elapsed().as_secs_f64();
+    // A model has no other files.
+    if let Some(text) = expression.standalone_text() {
+        text.clone_into(&mut written.text);
+    }
     Ok(EvaluatedPart {
         name,
         written,
@@ -143,6 +150,19 @@ fn evaluated(
         read,
         evaluate,
     })
+}
+
+/// The options for the evaluation of a description.
+fn evaluation_options(written: &Written, digits: Arithmetic) -> EvaluationOptions {
+    EvaluationOptions {
+        resolution: written.resolution,
+        zeros: match written.exact {
+            true => CoincidencePolicy::Exact,
+            false => CoincidencePolicy::ByResolution,
+        },
+        digits,
+        ..EvaluationOptions::default()
+    }
 }
 
 /// The note on a part without a solid.

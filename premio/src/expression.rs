@@ -1,5 +1,6 @@
 //! Solids as expressions: primitives, set operations and motions.
 
+mod description;
 mod operators;
 mod primitives;
 
@@ -8,16 +9,16 @@ pub use primitives::{block, cone, cylinder, frustum, sphere, torus, wedge};
 use crate::number::{ExactNumber, NumberError};
 use crate::solid::Solid;
 use crate::{Error, Rational, Result};
+use description::Description;
 use premio_csg::builder::{Builder, SolidId};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::primitive::{Primitive, PrimitiveError};
-use premio_csg::reader::{Format, Note, Program};
+use premio_csg::reader::{Format, Note};
 use premio_csg::recover::recovered;
 use premio_csg::transform::{Transform, TransformStep};
 use premio_csg::tree::{Operation, Tree};
 use premio_csg::writer;
 use premio_kernel::motion::MotionError;
-use premio_predict::model::record::DescriptionRecord;
 use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
@@ -87,13 +88,6 @@ enum Node {
 struct BuiltExpression {
     builder: Builder,
     solid: SolidId,
-}
-
-/// A description that was read.
-struct Description {
-    program: Program,
-    record: DescriptionRecord,
-    name: String,
 }
 
 impl Node {
@@ -168,15 +162,6 @@ fn nodes(root: &Arc<Node>) -> Vec<&Arc<Node>> {
 impl Expression {
     fn primitive(primitive: Result<Primitive, ExpressionError>) -> Self {
         Self(primitive.map(|primitive| Arc::new(Node::Leaf(primitive))))
-    }
-
-    pub(crate) fn described(program: Program, record: DescriptionRecord, name: String) -> Self {
-        let description = Description {
-            program,
-            record,
-            name,
-        };
-        Self(Ok(Arc::new(Node::Described(Box::new(description)))))
     }
 
     /// The solid without any points.
@@ -436,7 +421,8 @@ impl Expression {
     pub fn tree(&self) -> Result<Tree> {
         if let Ok(Node::Described(d)) = self.0.as_deref() {
             // The error has the place in the text.
-            return Ok(d.program.tree(&d.name, d.record.text.as_bytes())?);
+            let text = d.read.as_deref().unwrap_or(&d.record.text);
+            return Ok(d.program.tree(&d.name, text.as_bytes())?);
         }
         let BuiltExpression { builder, solid } = self.build()?;
         Ok(builder.finish(solid)?)
@@ -493,33 +479,6 @@ impl Expression {
             self.clone(),
             &options,
         ))
-    }
-
-    /// A description that is read as the same solid.
-    pub(crate) fn record(&self) -> Option<DescriptionRecord> {
-        match self.0.as_deref() {
-            Ok(Node::Described(description)) => Some(description.record.clone()),
-            // Decimals are exact in both languages; what is not is not a description of the solid.
-            _ => [Format::Padl, Format::Json].into_iter().find_map(|format| {
-                let text = self.to_description(format).ok()?;
-                let same =
-                    crate::read_text(&text, format).ok()?.tree().ok()? == self.tree().ok()?;
-                let record = DescriptionRecord {
-                    language: format.ending().to_owned(),
-                    text,
-                    ..DescriptionRecord::default()
-                };
-                same.then_some(record)
-            }),
-        }
-    }
-
-    /// The name of the file that the expression was read from.
-    pub(crate) fn name(&self) -> String {
-        match self.0.as_deref() {
-            Ok(Node::Described(description)) => description.name.clone(),
-            _ => "part".to_owned(),
-        }
     }
 
     /// The expression as a description in PADL, as the tree's JSON or as `.csg`.

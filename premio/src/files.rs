@@ -1,4 +1,8 @@
-//! Files that appear whole or not at all.
+//! Files that appear whole or not at all, and files that a description includes.
+
+mod included;
+
+pub use included::{IncludedFiles, find_included};
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};

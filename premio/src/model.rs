@@ -262,6 +262,7 @@ impl Model {
         let how = ReadOptions {
             facets: FacetLimit::from_record(record.smooth, record.facets.as_deref())?,
             part: record.part.clone(),
+            ..ReadOptions::default()
         };
         let name = &self.file.head.part;
         let program = reader::parse(name, record.text.as_bytes(), format, &how)?;

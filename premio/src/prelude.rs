@@ -14,6 +14,6 @@ pub use crate::{
     EdgeRef, EvaluationOptions, ExactNumber, ExportSettings, Expression, FaceRef, Fineness, Format,
     Grey, ImageCurve, JunctionKind, Model, Operation, Paper, PartFinder, PartTracker, PictureMatch,
     Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions, Solid,
-    SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, VertexRef, View, ViewArc,
-    block, cone, cylinder, frustum, sphere, torus, wedge,
+    SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, ValueOverride, VertexRef,
+    View, ViewArc, block, cone, cylinder, frustum, sphere, torus, wedge,
 };

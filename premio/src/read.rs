@@ -1,7 +1,8 @@
 //! Reading descriptions.
 
+use crate::files::IncludedFiles;
 use crate::{Error, Expression, Result};
-use premio_csg::reader::{self, Format, ReadOptions};
+use premio_csg::reader::{self, Format, Includes, ReadOptions};
 use premio_predict::model::record::DescriptionRecord;
 use std::fs;
 use std::path::Path;
@@ -29,8 +30,10 @@ pub fn read(path: impl AsRef<Path>) -> Result<Expression> {
     read_with(path, &ReadOptions::default())
 }
 
-/// Reads a description with options: which part of the text, and which round shapes of OpenSCAD are
-/// polygons.
+/// Reads a description with options: which part of the text, which round shapes of OpenSCAD
+/// are polygons, other values for numbers, and the loader of included files.
+///
+/// Without a loader, a `.padl` file includes files by [`IncludedFiles`].
 ///
 /// # Errors
 /// As [`read`].
@@ -46,6 +49,12 @@ pub fn read(path: impl AsRef<Path>) -> Result<Expression> {
 /// let options = ReadOptions { part: Some("A".to_owned()), ..ReadOptions::default() };
 /// assert_eq!(premio::read_with("two.padl", &options)?.evaluate()?.faces().count(), 6);
 /// assert_eq!(premio::read("two.padl")?.evaluate()?.faces().count(), 1);
+///
+/// std::fs::write("cube.padl", "L = 2\nCUBE = BLO(X=L, Y=L, Z=L)\n").unwrap();
+/// let other = ValueOverride { name: "L".to_owned(), value: "3".to_owned() };
+/// let options = ReadOptions { overrides: vec![other], ..ReadOptions::default() };
+/// let cube = premio::read_with("cube.padl", &options)?.evaluate()?;
+/// assert!((cube.volume() - 27.0).abs() < 1e-12);
 /// # Ok::<(), premio::Error>(())
 /// ```
 pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Expression> {
@@ -55,7 +64,15 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Expres
         expected: ".padl, .csg, .json, .asc or .pov",
     })?;
     let bytes = fs::read(path).map_err(|source| Error::file(path, source))?;
-    read_bytes(&path.display().to_string(), &bytes, format, options)
+    let name = path.display().to_string();
+    if options.includes.is_available() {
+        return read_bytes(&name, &bytes, format, options);
+    }
+    let options = ReadOptions {
+        includes: Includes::new(IncludedFiles::default()),
+        ..options.clone()
+    };
+    read_bytes(&name, &bytes, format, &options)
 }
 
 /// Reads a description from a text.
@@ -97,12 +114,18 @@ pub fn read_bytes(
     options: &ReadOptions,
 ) -> Result<Expression> {
     let program = reader::parse(name, bytes, format, options)?;
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    // A model has no other files.
+    let (text, read) = match program.standalone.clone() {
+        Some(standalone) => (standalone, Some(text)),
+        None => (text, None),
+    };
     let record = DescriptionRecord {
         language: format.ending().to_owned(),
-        text: String::from_utf8_lossy(bytes).into_owned(),
+        text,
         part: options.part.clone(),
         facets: options.facets.recorded(),
         ..DescriptionRecord::default()
     };
-    Ok(Expression::described(program, record, name.to_owned()))
+    Ok(Expression::of_text(program, record, name.to_owned(), read))
 }

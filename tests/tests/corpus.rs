@@ -67,7 +67,7 @@ impl Task {
                 true => FacetLimit::None,
                 false => FacetLimit::default(),
             },
-            part: None,
+            ..ReadOptions::default()
         };
         read(&self.name, &self.text, self.format, &options).map_err(|e| e.to_string())
     }

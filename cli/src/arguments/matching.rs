@@ -1,5 +1,6 @@
 //! Options of the commands that find parts in pictures.
 
+use super::DefineOptions;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -18,6 +19,8 @@ pub struct SoughtOptions {
     /// The detector, as in a setup's [detector] (TOML) [default: the model's]
     #[arg(long, value_name = "FILE")]
     pub detector: Option<PathBuf>,
+    #[command(flatten)]
+    pub define: DefineOptions,
     /// How correspondences are searched
     #[arg(long, value_enum, default_value_t)]
     pub strategy: StrategyName,

@@ -60,7 +60,7 @@ const NOTHING_RECOVERED: &str = "no relation of primitives is recovered: the coo
 fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, CliError> {
     let format = input::format(&options.file)?;
     let text = session.limits.read(&options.file)?;
-    let how = options.reading.options();
+    let how = options.reading.options(session.limits);
     let source = reader::parse(name, &text, format, &how).map_err(|e| CliError::read(&e, &text))?;
     session.voice.notes(name, &text, &source.notes);
     Ok(source)

@@ -94,7 +94,12 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
     let camera = PinholeFile::read(&options.camera, session)?;
     let is_model = path.extension().is_some_and(|e| e == "model");
     let mut known = None;
+    let define = &options.define;
     let (described, records) = match (is_model, Format::from_path(path)) {
+        (true, _) if !define.overrides.is_empty() => {
+            let said = "found `-D`, expected a .padl description, in which numbers have names";
+            return Err(CliError::input(format!("{name}: {said}")));
+        }
         (true, _) => {
             let model = ReadModel::read(path, session)?;
             let described = model.part(session)?;
@@ -102,7 +107,7 @@ fn read(options: &SoughtOptions, session: Session) -> Result<Sought, CliError> {
             known = Some(head.setups.conditions.detector);
             (described, records)
         }
-        (false, Some(_)) => (input::described(path, session)?, Vec::new()),
+        (false, Some(_)) => (input::described(path, define, session)?, Vec::new()),
         (false, None) => {
             let expected =
                 "expected a model (.model), or a description (.padl, .csg, .json, .asc or .pov)";

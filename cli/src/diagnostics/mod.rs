@@ -46,6 +46,8 @@ impl CliError {
 
     /// A text that could not be read.
     pub fn read(error: &ReadError, text: &[u8]) -> Self {
+        // The error may be in an included file.
+        let text = error.text.as_deref().unwrap_or(text);
         let message = Box::new(Message::of_reader(error, text));
         match error.kind {
             ErrorKind::Input => Self::Input(message),

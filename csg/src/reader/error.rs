@@ -3,6 +3,7 @@
 use premio_text::{LineColumn, nearest};
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Whether the text is invalid, or valid and beyond a stated limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +17,7 @@ pub enum ErrorKind {
 /// Why a text was not read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadError {
-    /// The name of the text, as given to the reader.
+    /// The name of the text: as given to the reader, or of an included file or an override.
     pub name: Box<str>,
     /// Invalid input, or a stated limit.
     pub kind: ErrorKind,
@@ -32,6 +33,15 @@ pub struct ReadError {
     pub expected: Box<str>,
     /// How to fix it.
     pub help: Option<Box<str>>,
+    /// The text that contains the error, if it is not the one that the reader was given.
+    pub text: Option<Arc<[u8]>>,
+}
+
+/// A text other than the one that the reader was given: an included file or an override.
+#[derive(Debug)]
+pub(super) struct OtherText {
+    pub(super) name: Box<str>,
+    pub(super) bytes: Arc<[u8]>,
 }
 
 impl fmt::Display for ReadError {
@@ -65,6 +75,8 @@ pub(super) struct SpannedError {
     found: String,
     expected: String,
     help: Option<String>,
+    /// The text that contains it, if it is not the one that the reader was given.
+    text: Option<Arc<OtherText>>,
 }
 
 impl SpannedError {
@@ -81,6 +93,7 @@ impl SpannedError {
             found,
             expected,
             help: None,
+            text: None,
         }
     }
 
@@ -104,6 +117,29 @@ impl SpannedError {
         }
     }
 
+    /// Adds where the text was used, after the advice.
+    pub(super) fn context(self, words: &str) -> Self {
+        let help = match &self.help {
+            Some(help) => format!("{help}; {words}"),
+            None => words.to_owned(),
+        };
+        self.help(help)
+    }
+
+    pub(super) fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// The error at another span, in another text if there is one.
+    pub(super) fn moved(self, span: Range<usize>, text: Option<Arc<OtherText>>) -> Self {
+        Self { span, text, ..self }
+    }
+
+    /// Whether it is known to be in another text.
+    pub(super) fn is_in_other_text(&self) -> bool {
+        self.text.is_some()
+    }
+
     /// Adds the name that was probably meant, if one is similar.
     pub(super) fn suggest<'a>(self, word: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         match nearest(word, known) {
@@ -114,6 +150,10 @@ impl SpannedError {
 
     /// The error with its line and column.
     pub(super) fn locate(self, name: &str, text: &[u8]) -> ReadError {
+        let (name, text) = match &self.text {
+            Some(other) => (&*other.name, &*other.bytes),
+            None => (name, text),
+        };
         let LineColumn { line, column } = LineColumn::new(text, self.span.start);
         ReadError {
             name: name.into(),
@@ -124,6 +164,7 @@ impl SpannedError {
             found: self.found.into(),
             expected: self.expected.into(),
             help: self.help.map(Into::into),
+            text: self.text.map(|other| other.bytes.clone()),
         }
     }
 }

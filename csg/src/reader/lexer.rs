@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use winnow::ascii::{digit0, digit1};
-use winnow::combinator::{alt, opt, preceded, repeat};
+use winnow::combinator::{alt, not, opt, peek, preceded, repeat};
 use winnow::error::ContextError;
 use winnow::prelude::*;
 use winnow::token::{any, none_of, one_of, take_till, take_until, take_while};
@@ -14,7 +14,7 @@ use premio_text::escape::quote;
 /// The lexical differences between the languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dialect {
-    /// `#` comments; line ends are significant.
+    /// `#` comments; line ends are significant; ranges such as `0..7`.
     Padl,
     /// `//` and `/* */` comments.
     Scad,
@@ -32,6 +32,8 @@ pub(super) enum Token {
     /// With its quotes.
     Text,
     Symbol(char),
+    /// `..`
+    Range,
     Newline,
     End,
 }
@@ -62,12 +64,19 @@ fn exponent<'a>(input: &mut &'a str) -> Plain<&'a str> {
         .parse_next(input)
 }
 
-fn number<'a>(input: &mut &'a str) -> Plain<&'a str> {
-    let whole = (digit1, opt(('.', digit0))).void();
-    let fraction = ('.', digit1).void();
-    (alt((whole, fraction)), opt(exponent))
-        .take()
-        .parse_next(input)
+fn number<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<&'a str> {
+    // The two points of a range belong to no number.
+    let range = move |input: &mut &'a str| match dialect {
+        Dialect::Padl => peek('.').void().parse_next(input),
+        _ => winnow::combinator::fail.parse_next(input),
+    };
+    move |input| {
+        let whole = (digit1, opt(('.', not(range), digit0))).void();
+        let fraction = ('.', digit1).void();
+        (alt((whole, fraction)), opt(exponent))
+            .take()
+            .parse_next(input)
+    }
 }
 
 fn name<'a>(input: &mut &'a str) -> Plain<&'a str> {
@@ -136,8 +145,12 @@ fn skipped<'a>(dialect: Dialect) -> impl FnMut(&mut &'a str) -> Plain<()> {
 
 fn word(dialect: Dialect, input: &mut &str) -> Plain<Token> {
     let more = |c: char| dialect == Dialect::Pov && matches!(c, '<' | '>' | '.' | '?' | '&' | '|');
+    let range = move |input: &mut &str| match dialect {
+        Dialect::Padl => "..".value(Token::Range).parse_next(input),
+        _ => winnow::combinator::fail.parse_next(input),
+    };
     alt((
-        number.value(Token::Number),
+        number(dialect).value(Token::Number),
         name.value(Token::Name),
         quoted.value(Token::Text),
         '\n'.value(Token::Newline),
@@ -145,6 +158,7 @@ fn word(dialect: Dialect, input: &mut &str) -> Plain<Token> {
             '(', ')', '[', ']', '{', '}', '=', ',', ';', ':', '+', '-', '*', '/', '%', '#', '!',
         ])
         .map(Token::Symbol),
+        range,
         one_of(more).map(Token::Symbol),
     ))
     .parse_next(input)
@@ -205,33 +219,82 @@ fn unreadable(source: &str, start: usize) -> SpannedError {
 /// A position among the tokens of a text.
 pub(super) struct Cursor<'a> {
     source: &'a str,
+    /// Added to all positions.
+    base: usize,
+    /// The end of the text in words.
+    end_words: &'static str,
     lexemes: Vec<Lexeme>,
     at: usize,
 }
 
 impl<'a> Cursor<'a> {
     pub(super) fn new(source: &'a str, dialect: Dialect) -> Result<Self, SpannedError> {
+        Self::with_base(source, dialect, 0)
+    }
+
+    /// The tokens of a text whose positions are counted from `base`.
+    pub(super) fn with_base(
+        source: &'a str,
+        dialect: Dialect,
+        base: usize,
+    ) -> Result<Self, SpannedError> {
+        let mut lexemes = lex(source, dialect).map_err(|error| {
+            let Range { start, end } = error.span();
+            error.moved(base + start..base + end, None)
+        })?;
+        for lexeme in &mut lexemes {
+            lexeme.start += base;
+            lexeme.end += base;
+        }
         Ok(Self {
             source,
-            lexemes: lex(source, dialect)?,
+            base,
+            end_words: "the end of the file",
+            lexemes,
             at: 0,
         })
     }
 
     pub(super) fn peek(&self) -> Lexeme {
-        let end = self.source.len();
+        self.peek_at(0)
+    }
+
+    /// Says what ends with the text, where it is not a file.
+    pub(super) fn name_end(&mut self, words: &'static str) {
+        self.end_words = words;
+    }
+
+    /// The token after `ahead` others.
+    pub(super) fn peek_at(&self, ahead: usize) -> Lexeme {
+        let end = self.end();
         let last = Lexeme {
             token: Token::End,
             start: end,
             end,
         };
-        self.lexemes.get(self.at).copied().unwrap_or(last)
+        self.lexemes.get(self.at + ahead).copied().unwrap_or(last)
+    }
+
+    /// The position of the end of the text.
+    pub(super) fn end(&self) -> usize {
+        self.base + self.source.len()
     }
 
     pub(super) fn next(&mut self) -> Lexeme {
         let lexeme = self.peek();
         self.at += 1;
         lexeme
+    }
+
+    /// Goes back to the last token.
+    pub(super) fn back(&mut self) {
+        self.at = self.at.saturating_sub(1);
+    }
+
+    /// The position after the last token that was taken.
+    pub(super) fn previous_end(&self) -> usize {
+        let last = self.at.checked_sub(1).and_then(|at| self.lexemes.get(at));
+        last.map_or(self.base, |lexeme| lexeme.end)
     }
 
     pub(super) fn skip_newlines(&mut self) {
@@ -249,13 +312,15 @@ impl<'a> Cursor<'a> {
     }
 
     pub(super) fn text(&self, lexeme: Lexeme) -> &'a str {
-        self.source.get(lexeme.span()).unwrap_or_default()
+        let Range { start, end } = lexeme.span();
+        let span = start.saturating_sub(self.base)..end.saturating_sub(self.base);
+        self.source.get(span).unwrap_or_default()
     }
 
     /// The error that something else is expected in place of a token.
     pub(super) fn unexpected(&self, lexeme: Lexeme, expected: impl Into<String>) -> SpannedError {
         let found = match lexeme.token {
-            Token::End => "the end of the file".to_owned(),
+            Token::End => self.end_words.to_owned(),
             Token::Newline => "the end of the line".to_owned(),
             _ => quote(self.text(lexeme)),
         };

@@ -1,11 +1,12 @@
 //! Readers of the description languages, from text to tree.
 //!
-//! Nothing here accesses files. Every error has its position in the text. No text, however deeply
+//! Nothing here accesses files: included ones come from a loader of the caller. Every error has its position in the text. No text, however deeply
 //! nested, can overflow a reader's stack.
 
 mod brlcad;
 mod error;
 mod frame;
+mod includes;
 mod json;
 mod lexer;
 mod notes;
@@ -20,12 +21,15 @@ mod tests;
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
-use error::SpannedError;
 pub use error::{ErrorKind, ReadError};
+use error::{OtherText, SpannedError};
+pub use includes::{IncludeError, IncludeLoader, IncludePath, Includes, ValueOverride};
 
 use crate::builder::{Builder, SolidId};
 use crate::tree::Tree;
+use premio_text::escape::quote;
 
 /// A description language.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -146,6 +150,10 @@ pub struct ReadOptions {
     /// last solid assigned in `.padl`, the only object that no other contains in `.asc`, and the
     /// whole scene in `.pov`.
     pub part: Option<String>,
+    /// Other values for names that a `.padl` text sets.
+    pub overrides: Vec<ValueOverride>,
+    /// The loader of the files that a `.padl` text includes.
+    pub includes: Includes,
 }
 
 /// A remark for the author, and its span in the text in bytes.
@@ -180,8 +188,26 @@ pub struct Program {
     pub digits: Option<f64>,
     /// The remarks for the author.
     pub notes: Vec<Note>,
-    /// The span of the part in the text.
+    /// A text that describes the same parts without included files and overrides; `None` if the
+    /// text that was read does.
+    pub standalone: Option<String>,
+    /// The files that the text includes, in the order in which they were read.
+    pub included: Vec<IncludePath>,
+    /// The position of the part.
+    place: PartPlace,
+}
+
+/// The position of a part: its span, and the text if it is not the one that was read.
+#[derive(Debug, Default)]
+struct PartPlace {
     span: Range<usize>,
+    text: Option<Arc<OtherText>>,
+}
+
+impl PartPlace {
+    fn new(span: Range<usize>) -> Self {
+        Self { span, text: None }
+    }
 }
 
 impl Program {
@@ -207,7 +233,9 @@ impl Program {
     fn finished(&self) -> Result<Tree, SpannedError> {
         self.builder.finish(self.part).map_err(|error| {
             let expected = "a description within the limits";
-            SpannedError::limit(self.span.clone(), error.to_string(), expected)
+            let PartPlace { span, text } = &self.place;
+            SpannedError::limit(span.clone(), error.to_string(), expected)
+                .moved(span.clone(), text.clone())
         })
     }
 
@@ -231,7 +259,7 @@ pub fn read(
     format: Format,
     options: &ReadOptions,
 ) -> Result<Description, ReadError> {
-    parse_bytes(bytes, format, options)
+    parse_bytes(name, bytes, format, options)
         .and_then(Program::description)
         .map_err(|fault| fault.locate(name, bytes))
 }
@@ -246,33 +274,41 @@ pub fn parse(
     format: Format,
     options: &ReadOptions,
 ) -> Result<Program, ReadError> {
-    parse_bytes(bytes, format, options).map_err(|fault| fault.locate(name, bytes))
+    parse_bytes(name, bytes, format, options).map_err(|fault| fault.locate(name, bytes))
 }
 
 fn parse_bytes(
+    name: &str,
     bytes: &[u8],
     format: Format,
     options: &ReadOptions,
 ) -> Result<Program, SpannedError> {
-    let source = std::str::from_utf8(bytes).map_err(|error| {
-        let at = error.valid_up_to();
-        let byte = bytes.get(at).copied().unwrap_or_default();
-        SpannedError::input(
-            at..at + 1,
-            format!("the byte {byte:#04x}"),
-            "a text in UTF-8",
-        )
-    })?;
+    let source = utf8(bytes, 0)?;
     if options.part.is_some() && matches!(format, Format::Csg | Format::Json) {
         let found = "a part requested by name";
         let expected = "a `.padl`, `.asc` or `.pov` file, in which parts have names";
         return Err(SpannedError::input(0..0, found, expected));
     }
+    if let (Some(first), false) = (options.overrides.first(), format == Format::Padl) {
+        let found = format!("another value for {}", quote(&first.name));
+        let expected = "a `.padl` file, in which numbers have names";
+        return Err(SpannedError::input(0..0, found, expected));
+    }
     match format {
-        Format::Padl => padl::read(source, options),
+        Format::Padl => padl::read(name, source, options),
         Format::Csg => scad::read(source, options),
         Format::Json => json::read(source),
         Format::Asc => brlcad::read(source, options),
         Format::Pov => pov::read(source, options),
     }
+}
+
+/// The text of bytes whose positions are counted from `base`.
+fn utf8(bytes: &[u8], base: usize) -> Result<&str, SpannedError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        let byte = bytes.get(at).copied().unwrap_or_default();
+        let span = base + at..base + at + 1;
+        SpannedError::input(span, format!("the byte {byte:#04x}"), "a text in UTF-8")
+    })
 }

@@ -21,7 +21,7 @@ use super::frame::Vector;
 use super::notes::{Notes, Remarks};
 use super::number::literal;
 use super::rigid_fit::F64_DIGITS;
-use super::{Program, ReadOptions};
+use super::{PartPlace, Program, ReadOptions};
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::LineColumn;
@@ -52,7 +52,9 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         part,
         digits,
         notes,
-        span: database.objects[top].name.span.clone(),
+        standalone: None,
+        included: Vec::new(),
+        place: PartPlace::new(database.objects[top].name.span.clone()),
     })
 }
 

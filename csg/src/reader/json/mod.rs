@@ -9,10 +9,10 @@ use std::ops::Range;
 use premio_kernel::number::rational::Rational;
 
 use self::value::{Content, Document, Member, Value, ValueId, parse};
-use super::Program;
 use super::error::SpannedError;
 use super::number::{bad_length, literal};
 use super::spanned::Spanned;
+use super::{PartPlace, Program};
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{self, Transform};
@@ -33,7 +33,9 @@ pub(super) fn read(source: &str) -> Result<Program, SpannedError> {
         part,
         digits: None,
         notes: Vec::new(),
-        span,
+        standalone: None,
+        included: Vec::new(),
+        place: PartPlace::new(span),
     })
 }
 

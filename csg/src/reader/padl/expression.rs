@@ -6,6 +6,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::number::{check_length, show};
+use super::keywords::operation_word;
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 
@@ -69,7 +70,7 @@ pub(super) enum Operator {
 
 impl Operator {
     /// The precedence; operators of equal precedence are applied from left to right.
-    fn rank(self) -> u8 {
+    pub(super) fn rank(self) -> u8 {
         match self {
             Self::Set(_) => 0,
             Self::Add | Self::Subtract => 1,
@@ -80,9 +81,7 @@ impl Operator {
 
     fn text(self) -> &'static str {
         match self {
-            Self::Set(Operation::Union) => "UN",
-            Self::Set(Operation::Intersection) => "INT",
-            Self::Set(Operation::Difference) => "DIF",
+            Self::Set(operation) => operation_word(operation),
             Self::Add => "+",
             Self::Subtract | Self::Negate => "-",
             Self::Multiply => "*",
@@ -94,72 +93,51 @@ impl Operator {
 /// The part of an expression between two brackets that has been read.
 #[derive(Debug, Default)]
 pub(super) struct Expression {
-    operands: Vec<Operand>,
+    /// The operators whose right operand is not complete.
     operators: Vec<Operator>,
     /// Whether the last item read is a whole operand.
     pub(super) complete: bool,
 }
 
 impl Expression {
-    pub(super) fn operand(&mut self, operand: Operand) {
-        self.operands.push(operand);
-        self.complete = true;
-    }
-
-    /// Takes the last operand back, to replace it.
-    pub(super) fn take_operand(&mut self) -> Option<Operand> {
-        self.complete = false;
-        self.operands.pop()
-    }
-
     pub(super) fn prefix(&mut self, operator: Operator) {
         self.operators.push(operator);
     }
 
-    pub(super) fn infix(
-        &mut self,
-        operator: Operator,
-        builder: &mut Builder,
-    ) -> Result<(), SpannedError> {
-        self.reduce(operator.rank(), builder)?;
+    pub(super) fn infix(&mut self, operator: Operator) {
         self.operators.push(operator);
         self.complete = false;
-        Ok(())
     }
 
-    /// The value of the whole expression; `None` if nothing was read.
-    pub(super) fn close(mut self, builder: &mut Builder) -> Result<Option<Operand>, SpannedError> {
-        self.reduce(0, builder)?;
-        Ok(self.operands.pop())
+    /// Whether no operator waits for its right operand.
+    pub(super) fn has_no_operator(&self) -> bool {
+        self.operators.is_empty()
     }
 
-    /// Applies the operators of higher precedence than the given rank.
-    fn reduce(&mut self, rank: u8, builder: &mut Builder) -> Result<(), SpannedError> {
-        while let Some(operator) = self.operators.pop_if(|last| last.rank() >= rank) {
-            let Some(right) = self.operands.pop() else {
-                return Ok(());
-            };
-            let result = if operator == Operator::Negate {
-                negate(right)?
-            } else {
-                let Some(left) = self.operands.pop() else {
-                    return Ok(());
-                };
-                apply(operator, left, right, builder)?
-            };
-            self.operands.push(result);
+    /// Takes the set operation that waits for its right operand.
+    pub(super) fn take_operation(&mut self) -> Option<Operation> {
+        match self.operators.last() {
+            Some(&Operator::Set(operation)) => {
+                self.operators.pop();
+                Some(operation)
+            }
+            _ => None,
         }
-        Ok(())
+    }
+
+    /// Takes the last operator, if its precedence is at least this.
+    pub(super) fn take_operator(&mut self, rank: u8) -> Option<Operator> {
+        self.operators.pop_if(|last| last.rank() >= rank)
     }
 }
 
-fn negate(operand: Operand) -> Result<Operand, SpannedError> {
+pub(super) fn negate(operand: Operand) -> Result<Operand, SpannedError> {
     let span = operand.span.clone();
     let value = Value::Number(-operand.number("after `-`")?);
     Ok(Operand { value, span })
 }
 
-fn apply(
+pub(super) fn apply(
     operator: Operator,
     left: Operand,
     right: Operand,

@@ -1,4 +1,4 @@
-//! The keywords of `.padl`: primitives, operators, motions, and what arguments they take.
+//! The words of `.padl`: primitives, operators, motions and functions, and what arguments they take.
 
 use crate::tree::Operation;
 
@@ -78,3 +78,76 @@ impl Keyword {
         })
     }
 }
+
+/// The word of an operation.
+pub(super) fn operation_word(operation: Operation) -> &'static str {
+    match operation {
+        Operation::Union => "UN",
+        Operation::Intersection => "INT",
+        Operation::Difference => "DIF",
+    }
+}
+
+/// A function of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Function {
+    Sine,
+    Cosine,
+    Tangent,
+    SquareRoot,
+    Minimum,
+    Maximum,
+}
+
+impl Function {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Sine => "sin",
+            Self::Cosine => "cos",
+            Self::Tangent => "tan",
+            Self::SquareRoot => "sqrt",
+            Self::Minimum => "min",
+            Self::Maximum => "max",
+        }
+    }
+
+    /// Whether it takes any number of arguments from one, and not one.
+    pub(super) fn takes_many(self) -> bool {
+        matches!(self, Self::Minimum | Self::Maximum)
+    }
+}
+
+/// A word with a meaning that a name of the file takes from it.
+///
+/// It is not reserved: files used such names before the words were added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Predefined {
+    Function(Function),
+    Pi,
+    For,
+}
+
+/// All predefined words, in the spelling of messages.
+pub(super) const PREDEFINED: [&str; 8] = ["sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR"];
+
+impl Predefined {
+    pub(super) fn new(word: &str) -> Option<Self> {
+        Some(match word.to_ascii_uppercase().as_str() {
+            "SIN" => Self::Function(Function::Sine),
+            "COS" => Self::Function(Function::Cosine),
+            "TAN" => Self::Function(Function::Tangent),
+            "SQRT" => Self::Function(Function::SquareRoot),
+            "MIN" => Self::Function(Function::Minimum),
+            "MAX" => Self::Function(Function::Maximum),
+            "PI" => Self::Pi,
+            "FOR" => Self::For,
+            _ => return None,
+        })
+    }
+}
+
+/// The word before the step of a range.
+pub(super) const STEP: &str = "STEP";
+
+/// The word of a statement that includes a file.
+pub(super) const INCLUDE: &str = "INCLUDE";

@@ -30,7 +30,7 @@ use self::nodes::Evaluator;
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect};
 use super::notes::Remarks;
-use super::{Program, ReadOptions};
+use super::{PartPlace, Program, ReadOptions};
 
 /// The relative rounding of the six digits that OpenSCAD writes.
 const SIX_DIGITS: f64 = 1e-6;
@@ -53,6 +53,8 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         part,
         digits,
         notes,
-        span: 0..source.len(),
+        standalone: None,
+        included: Vec::new(),
+        place: PartPlace::new(0..source.len()),
     })
 }

@@ -67,7 +67,7 @@ fn polygons_are_read_and_ellipsoids_refused() {
     );
     let options = ReadOptions {
         facets: FacetLimit::None,
-        part: None,
+        ..ReadOptions::default()
     };
     let Some(smooth) = file("sphere-tests.csg", &options) else {
         return;

@@ -3,7 +3,11 @@
 use super::*;
 use proptest::prelude::*;
 
-const SEEDS: [(&str, Format); 5] = [
+const SEEDS: [(&str, Format); 6] = [
+    (
+        "N = 3\nHOLE(D, L=2*D) = CYL(R=D/2, H=L) AT (MOVZ=-min(L, 9)/2)\nROW(S, N=2) = S UN FOR i=1..N STEP 1: S AT (MOVX=4*i)\nP = BLO(X=9, Y=9, Z=1) DIF FOR i=0..N: FOR j=0..1: HOLE(D=sqrt(2)) AT (MOVX=i*cos(60), MOVY=j+sin(30)) DIF ROW(S=HOLE(1, L=3), N=max(1, 3)) AT (MOVX=pi)\n",
+        Format::Padl,
+    ),
     (
         "L = 6\nA = BLO(X=L, Y=4*2, Z=2e0) # c\nP = (A DIF CYL(R=1, H=3) AT (MOVX=L/2, ROTZ=-30)) UN A\n",
         Format::Padl,
@@ -49,7 +53,8 @@ proptest! {
         "cube", "group", "{", "}", ";", "[", "]", "multmatrix", "%", "!", "$fn", "circle", "undef", "nan",
         "\"op\"", "\"prim\"", "\"union\"", ":", "null", "\"", "#", "0", "1e400", "1e999999999999",
         "put", "tor", "comb", "tree", "{l A}", " ", "V {0 0 0}", "<", ">", "object", "sphere", "#declare", "scale",
-        "difference", "inverse", ".x",
+        "difference", "inverse", ".x", "FOR", " i=0..3", "..", "STEP", "H(D)=", "H(", "D=", "sin(", "sqrt(", "min(", "pi", "INCLUDE",
+        "\"a.padl\"",
     ]), 0..60)) {
         let text = words.concat();
         for format in Format::ALL {
@@ -59,7 +64,7 @@ proptest! {
 
     #[test]
     fn changed_files(
-        seed in 0usize..5,
+        seed in 0usize..6,
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0u8..3, any::<u8>()), 1..8),
     ) {
         let (text, format) = SEEDS[seed];
@@ -101,6 +106,33 @@ fn deep_padl() {
     assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
     let text = format!("A = {}", "(".repeat(DEEP));
     assert!(read_text(&text, Format::Padl).is_err());
+}
+
+#[test]
+fn deep_padl_loops_and_parts() {
+    let inner = nested("(FOR i=0..0: ", "SPH(R=1)", ")");
+    assert!(read_text(&format!("A = {inner}"), Format::Padl).is_err());
+    for open in [
+        "FOR i=",
+        "(FOR i=(",
+        "FOR i=0..",
+        "sin(",
+        "min(1,",
+        "H(",
+        "H(D=",
+    ] {
+        let text = format!("H(D) = SPH(R=D)\nA = {}", open.repeat(DEEP));
+        assert!(read_text(&text, Format::Padl).is_err());
+    }
+    let text = format!("H(D) = D\nA = SPH(R={})", nested("H(", "1", ")"));
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
+    let text = format!("A = SPH(R={})", nested("max(", "1", ")"));
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
+    // A chain of parts, each of which uses the one before.
+    let chain = (1..LEVELS).map(|k| format!("H{k}(D) = H{}(D)\n", k - 1));
+    let text = format!("H0(D) = SPH(R=D)\n{}", chain.collect::<String>());
+    let text = format!("{text}P = H{}(2)\n", LEVELS - 1);
+    assert_eq!(tree(&text, Format::Padl).leaves().count(), 1);
 }
 
 #[test]

@@ -1,0 +1,75 @@
+//! The limit of what loops and parts with parameters expand to.
+
+use std::ops::Range;
+
+use super::super::error::SpannedError;
+
+/// The largest number of solids that loops and uses of parts with parameters make.
+pub(super) const MAX_SOLIDS: u64 = 250_000;
+
+/// The largest number of other steps, in which a long number counts for several.
+pub(super) const MAX_STEPS: u64 = 10_000_000;
+
+/// The length of a number that counts for one step, in bits.
+const STEP_BITS: usize = 256;
+
+/// What has been expanded so far.
+#[derive(Debug, Default)]
+pub(super) struct Budget {
+    solids: u64,
+    steps: u64,
+}
+
+impl Budget {
+    /// Counts a step.
+    pub(super) fn count_step(&mut self, place: &Range<usize>) -> Result<(), SpannedError> {
+        self.steps += 1;
+        self.check(place)
+    }
+
+    /// Counts a solid: a primitive, a motion or a set operation.
+    pub(super) fn count_solid(&mut self, place: &Range<usize>) -> Result<(), SpannedError> {
+        self.solids += 1;
+        self.check(place)
+    }
+
+    /// Counts the length of a number.
+    pub(super) fn count_bits(&mut self, bits: usize) {
+        self.steps += (bits / STEP_BITS) as u64;
+    }
+
+    /// Checks that a range alone is within the limit.
+    pub(super) fn check_rounds(
+        rounds: Option<u64>,
+        place: &Range<usize>,
+    ) -> Result<u64, SpannedError> {
+        rounds
+            .filter(|&rounds| rounds <= MAX_SOLIDS)
+            .ok_or_else(|| {
+                let found = match rounds {
+                    Some(rounds) => format!("a range of {rounds} numbers"),
+                    None => "a range of more than 1e19 numbers".to_owned(),
+                };
+                SpannedError::limit(place.clone(), found, most_solids())
+            })
+    }
+
+    fn check(&self, place: &Range<usize>) -> Result<(), SpannedError> {
+        let expected = if self.solids > MAX_SOLIDS {
+            most_solids()
+        } else if self.steps > MAX_STEPS {
+            format!("at most {MAX_STEPS} numbers and operations in {EXPANSIONS}")
+        } else {
+            return Ok(());
+        };
+        let found = "an expansion beyond the limit";
+        Err(SpannedError::limit(place.clone(), found, expected))
+    }
+}
+
+/// What is limited.
+const EXPANSIONS: &str = "all `FOR` and parts with parameters";
+
+fn most_solids() -> String {
+    format!("at most {MAX_SOLIDS} primitives, motions and set operations in {EXPANSIONS}")
+}

@@ -13,6 +13,9 @@ pub(super) const MAX_STEPS: u64 = 10_000_000;
 /// The length of a number that counts for one step, in bits.
 const STEP_BITS: usize = 256;
 
+/// The number of steps that the value of a function counts for.
+const FUNCTION_STEPS: u64 = 32;
+
 /// What has been expanded so far.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
@@ -31,6 +34,12 @@ impl Budget {
     pub(super) fn count_solid(&mut self, place: &Range<usize>) -> Result<(), SpannedError> {
         self.solids += 1;
         self.check(place)
+    }
+
+    /// Counts the value of a function, by the length of its argument.
+    pub(super) fn count_function(&mut self, bits: usize) {
+        self.steps += FUNCTION_STEPS;
+        self.count_bits(bits);
     }
 
     /// Counts the length of a number.

@@ -269,6 +269,7 @@ impl Machine {
         let Some((argument, place)) = numbers.reduce(least) else {
             return Ok(());
         };
+        self.budget.count_function(bits(&argument));
         let value = functions::value(function, &argument, &place)?;
         self.push_value(value, function.word(), span)
     }

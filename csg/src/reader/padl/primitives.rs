@@ -7,12 +7,11 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::number::bad_length;
 use super::super::spanned::Spanned;
+use super::expression::Operand;
 use super::keywords::{MOTIONS, Shape};
 use crate::builder::MAX_MOTION_BITS;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{Transform, TransformStep, along};
-
-use super::expression::Operand;
 
 /// The primitive of arguments, each with its index among [`Shape::arguments`].
 pub(super) fn primitive(

@@ -184,7 +184,7 @@ fn section_of_polyhedron(polyhedron: &Polyhedron) -> Result<Figure, FigureError>
             [0, 1].map(|k| &a[k] + &t * (&b[k] - &a[k]))
         });
         let mut crossings: Vec<[Rational; 2]> = crossings.collect();
-        crossings.sort_by(|p, q| along(p).cmp(&along(q)));
+        crossings.sort_by_cached_key(along);
         for pair in crossings.chunks_exact(2) {
             if pair[0] != pair[1] {
                 edges.push(FigureEdge::line(pair[0].clone(), pair[1].clone()));

@@ -269,12 +269,8 @@ fn merged(
     let mut of = Vec::with_capacity(candidates.len());
     let spread = F106::from_f64(SPREAD) * tolerance;
     // The first point of a vertex is an end of an edge, if any is.
-    let mut candidates: Vec<Option<Candidate>> = candidates.into_iter().map(Some).collect();
-    for i in 0..candidates.len() {
+    for (i, candidate) in candidates.into_iter().enumerate() {
         let first = found(&mut root, i);
-        let Some(candidate) = candidates[i].take() else {
-            continue;
-        };
         let vertex = *index.entry(first).or_insert(vertices.len());
         match vertices.get_mut(vertex) {
             None => vertices.push(Vertex {

@@ -102,11 +102,8 @@ impl Wrapping<'_> {
             match plane {
                 None if !is_in_line(a, b, point) => plane = Some(i),
                 None => {}
-                Some(c) => {
-                    if orientation([a, b, &self.points[c], point]).is_gt() {
-                        plane = Some(i);
-                    }
-                }
+                Some(c) if orientation([a, b, &self.points[c], point]).is_gt() => plane = Some(i),
+                Some(_) => {}
             }
         }
         let c = plane?;

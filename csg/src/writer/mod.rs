@@ -15,7 +15,6 @@ mod turns;
 use premio_kernel::number::rational::Rational;
 
 use crate::builder::{Builder, BuilderNode, MAX_LEAVES, Placing, SolidId};
-use crate::figure::Figure;
 use crate::primitive::{MirrorImage, Primitive};
 use crate::reader::Format;
 use crate::transform::{Transform, TransformStep};
@@ -47,8 +46,11 @@ pub enum WriteError {
     /// `.csg` has circles, and no arcs.
     #[error("`.csg` cannot represent a figure with arcs")]
     Arcs,
-    /// `.padl` has no figures.
-    #[error("`.padl` has no word for a prism or a revolution")]
+    /// The faces of polyhedra in `.csg` have no holes.
+    #[error("`.csg` cannot represent a polyhedron with a hole in a face")]
+    Holes,
+    /// `.padl` has no figures and no polyhedra.
+    #[error("`.padl` has no word for a prism, a revolution or a polyhedron")]
     Figure,
     /// The text would be too long.
     #[error("a text of more than {MAX_TEXT} bytes")]
@@ -75,10 +77,9 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     }
     let top = builder.draft_of(part).map(Use::new);
     match format {
-        Format::Csg if has_figure(builder, part, |figure| !figure.is_polygon()) => {
-            return Err(WriteError::Arcs);
-        }
-        Format::Padl if has_figure(builder, part, |_| true) => return Err(WriteError::Figure),
+        Format::Csg if has_primitive(builder, part, has_arcs) => return Err(WriteError::Arcs),
+        Format::Csg if has_primitive(builder, part, has_holes) => return Err(WriteError::Holes),
+        Format::Padl if has_primitive(builder, part, is_swept) => return Err(WriteError::Figure),
         _ => {}
     }
     match format {
@@ -89,8 +90,36 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     }
 }
 
-/// Whether a part uses a figure of some kind.
-fn has_figure(builder: &Builder, part: SolidId, is_it: impl Fn(&Figure) -> bool) -> bool {
+/// Whether a primitive has a figure with arcs.
+fn has_arcs(primitive: &Primitive) -> bool {
+    match primitive {
+        Primitive::Prism { figure, .. } | Primitive::Revolution { figure, .. } => {
+            !figure.is_polygon()
+        }
+        _ => false,
+    }
+}
+
+/// Whether a primitive has a plane face with a hole that no figure describes.
+fn has_holes(primitive: &Primitive) -> bool {
+    match primitive {
+        Primitive::Polyhedron { polyhedron } => {
+            polyhedron.faces().iter().any(|face| face.loops.len() > 1)
+        }
+        _ => false,
+    }
+}
+
+/// Whether a primitive is a prism, a revolution or a polyhedron.
+fn is_swept(primitive: &Primitive) -> bool {
+    matches!(
+        primitive,
+        Primitive::Prism { .. } | Primitive::Revolution { .. } | Primitive::Polyhedron { .. }
+    )
+}
+
+/// Whether a part uses a primitive of some kind.
+fn has_primitive(builder: &Builder, part: SolidId, is_it: impl Fn(&Primitive) -> bool) -> bool {
     let mut seen = std::collections::BTreeSet::new();
     let mut ahead: Vec<usize> = builder.draft_of(part).into_iter().collect();
     while let Some(draft) = ahead.pop() {
@@ -98,9 +127,7 @@ fn has_figure(builder: &Builder, part: SolidId, is_it: impl Fn(&Figure) -> bool)
             continue;
         }
         match builder.draft(draft) {
-            BuilderNode::Leaf(
-                Primitive::Prism { figure, .. } | Primitive::Revolution { figure, .. },
-            ) if is_it(figure) => return true,
+            BuilderNode::Leaf(primitive) if is_it(primitive) => return true,
             BuilderNode::Leaf(_) => {}
             BuilderNode::Operation { children, .. } => ahead.extend(children),
             BuilderNode::Moved { child, .. } => ahead.push(*child),

@@ -13,7 +13,8 @@
 //! A term counts as vanishing if it stays within the resolution as far as the leading terms do. In
 //! the coordinates of a [`Chart`] the leading terms are G(0, κ). The zone of a point extends as far
 //! as G and G_κ have no common zero; there every zero of G belongs to a branch that continues to σ
-//! = 0.
+//! = 0. The vanishing terms of a degree below n must not change the number of branches at the edge
+//! of the zone. They may where two branches of the leading form have nearly one direction.
 
 use super::{BranchTangent, DegeneratePoint, SingularPoint, ZONE};
 use crate::geometry::bivariate_trig_poly::{BivariateTrigPoly, Partials};
@@ -50,7 +51,8 @@ pub(super) fn simple<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2]) -> Option
     } else {
         Vec::new()
     };
-    fold(tracer, angles, 2, directions)
+    let charts = crossing_charts(tracer, angles, 2);
+    fold(tracer, angles, &charts, directions)
 }
 
 /// The degenerate point close to `start`.
@@ -151,8 +153,14 @@ fn multiple<N: Float>(
         return None;
     }
     let directions = roots_of_form(&k, n)?;
-    let point = fold(tracer, p, n, directions)?;
-    Some(DegeneratePoint { point, reach })
+    let charts = crossing_charts(tracer, p, n);
+    let point = fold(tracer, p, &charts, directions)?;
+    // What the terms of a lower degree add to G at the edge of the zone.
+    let at_edge = |degree: usize| size(&k, degree) / point.zone.powi((n - degree) as i32);
+    let lower = (0..n).map(at_edge).sum();
+    let is_complete = |c: &Chart<N>| is_plain(c, point.zone, N::ONE, lower);
+    let complete = charts.iter().all(is_complete);
+    complete.then_some(DegeneratePoint { point, reach })
 }
 
 /// The size of the terms of a degree.
@@ -224,22 +232,26 @@ fn roots_of_form<N: Float>(k: &Taylor<N>, n: usize) -> Option<Vec<[N; 2]>> {
     simple.then(|| roots.iter().map(|r| direction(r.t)).collect())
 }
 
-/// A point at which branches of different directions cross; `None` if no zone is unambiguous.
-fn fold<N: Float>(
-    tracer: &Tracer<'_, N>,
-    angles: [N; 2],
-    n: usize,
-    directions: Vec<[N; 2]>,
-) -> Option<SingularPoint<N>> {
+/// The charts, over either angle, about a point at which the terms of degree n lead.
+fn crossing_charts<N: Float>(tracer: &Tracer<'_, N>, angles: [N; 2], n: usize) -> [Chart<N>; 2] {
     let weights = Weights {
         run: 1,
         rise: 1,
         form: n,
     };
     let chart = |axis| Chart::new(tracer.form, angles, axis, &[], N::ONE, weights);
-    let charts = [TorusParameter::Around, TorusParameter::Tube].map(chart);
+    [TorusParameter::Around, TorusParameter::Tube].map(chart)
+}
+
+/// A point at which branches of different directions cross; `None` if no zone is unambiguous.
+fn fold<N: Float>(
+    tracer: &Tracer<'_, N>,
+    angles: [N; 2],
+    charts: &[Chart<N>; 2],
+    directions: Vec<[N; 2]>,
+) -> Option<SingularPoint<N>> {
     let holds = |c: &Chart<N>, zone: N| {
-        is_whole(c, tracer.resolution, zone, N::ONE) && is_plain(c, zone, N::ONE)
+        is_whole(c, tracer.resolution, zone, N::ONE) && is_plain(c, zone, N::ONE, N::ZERO)
     };
     let zone = zone(|zone| charts.iter().all(|c| holds(c, zone)))?;
     let pass = |[x, y]: [N; 2]| {
@@ -268,13 +280,16 @@ fn is_whole<N: Float>(chart: &Chart<N>, resolution: N, sigma: N, kappa: N) -> bo
     N::from_f64(WHOLE) * chart.left(sigma, kappa) <= resolution
 }
 
-/// Whether G and G_κ have no common zero, for |σ| and |κ| up to the given values.
-fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
+/// Whether G and G_κ have no common zero, for |σ| and |κ| up to the given values, even if terms of
+/// up to `lower` are added to G.
+fn is_plain<N: Float>(chart: &Chart<N>, sigma: N, kappa: N, lower: N) -> bool {
     let run = Interval::new(-sigma, sigma);
+    let change = Interval::new(-lower, lower);
+    let slope = change.times(chart.weights.form as f64);
     let mut stack = vec![(Interval::new(-kappa, kappa), 0)];
     while let Some((k, depth)) = stack.pop() {
         let g = chart.partials_over(run, k);
-        if !(g.f.has_zero() && g.y.has_zero()) {
+        if !((g.f + change).has_zero() && (g.y + slope).has_zero()) {
             continue;
         }
         // Branches may be as close in κ as the precision can separate.
@@ -437,5 +452,5 @@ fn holds_both<N: Float>(chart: &Chart<N>, sigma: N, kappa: N) -> bool {
         && (low.y.hi < N::ZERO) != (high.y.hi < N::ZERO)
         && (low.f.hi < N::ZERO) == (high.f.hi < N::ZERO)
         && (high.f.hi < N::ZERO) == (high.y.hi < N::ZERO)
-        && is_plain(chart, sigma, kappa)
+        && is_plain(chart, sigma, kappa, N::ZERO)
 }

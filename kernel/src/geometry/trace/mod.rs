@@ -3,9 +3,12 @@
 //! The square of both angles is subdivided until in every cell F has no zero, or one of its partial
 //! derivatives dominates the other, so that the curve in the cell is a graph of bounded slope
 //! (Snyder 1992; Plantinga and Vegter 2004). The bounds are Taylor bounds with third derivatives
-//! bounded over the cell. Cells are joined through the roots on their sides. Singular points, where
-//! F and its gradient vanish within the resolution, are found first and get cells of their own.
+//! bounded over the cell. A deep cell in which F is monotone along one angle is narrowed to a strip
+//! that contains the curve (`contraction`). Cells are joined through the roots on their sides.
+//! Singular points, where F and its gradient vanish within the resolution, are found first and get
+//! cells of their own.
 
+mod contraction;
 mod join;
 
 use super::bivariate_trig_poly::BivariateTrigPoly;
@@ -100,21 +103,18 @@ impl<N: Float> Tracer<'_, N> {
         let rounded_f64 = self.to_f64();
         while let Some((cell, depth)) = stack.pop() {
             self.look_at(&cell)?;
-            let f64_form = rounded_f64.as_ref().map(|f| f.bounds(&cell.to_f64()));
-            let (holds, wide) = match f64_form.map(|b| (b.contains(), b.wide)) {
-                Some(bounds) if cell.is_coarse() || !matches!(bounds.0, Holds::Unknown) => bounds,
-                _ => {
-                    let b = self.bounds(&cell);
-                    (b.contains(), b.wide)
-                }
+            let in_f64 = rounded_f64.as_ref().map(|f| f.part(&cell.to_f64(), depth));
+            let part = match in_f64 {
+                Some(part) if cell.is_coarse() || !matches!(part.content, Holds::Unknown) => part,
+                _ => self.part(&cell, depth),
             };
-            match holds {
+            match part.content {
                 Holds::Nothing => {}
                 Holds::Graph { axis, steep } => leaves.push(Leaf { cell, axis, steep }),
                 Holds::Unknown if depth >= deepest::<N>() => {
                     return Err(Unresolved::at(cell.centre()));
                 }
-                Holds::Unknown => stack.extend(cell.halves(wide).map(|c| (c, depth + 1))),
+                Holds::Unknown => stack.extend(cell.halves(part.wide).map(|c| (c, depth + 1))),
             }
         }
         Ok(leaves)

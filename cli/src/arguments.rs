@@ -6,7 +6,7 @@ mod matching;
 mod predict;
 mod sheet;
 
-use crate::session::{InputLimits, SessionIncludes};
+use crate::session::InputLimits;
 pub use camera::{CameraChoice, CameraOptions};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -186,13 +186,13 @@ impl ReadingOptions {
         }
     }
 
-    /// The options of the readers, which include files within the limits.
-    pub fn options(&self, limits: InputLimits) -> ReadOptions {
+    /// The options of the readers, with the loader of included files.
+    pub fn options(&self, includes: Includes) -> ReadOptions {
         ReadOptions {
             facets: self.facets(),
             part: self.part.clone(),
             overrides: self.define.overrides.clone(),
-            includes: Includes::new(SessionIncludes::new(limits)),
+            includes,
         }
     }
 }

@@ -2,10 +2,12 @@
 
 use crate::arguments::{DefineOptions, DescriptionOptions, ReadingOptions};
 use crate::diagnostics::{CliError, Reporter};
+use crate::includes::SessionIncludes;
+use crate::openscad;
 use crate::session::Session;
 use premio::shards::language;
 use premio::{Arithmetic, CoincidencePolicy, EvaluationOptions, Recovery, Solid};
-use premio_csg::reader::{self, FacetLimit, Format, ReadOptions};
+use premio_csg::reader::{self, FacetLimit, Format, Includes, ReadOptions};
 use premio_matching::camera::{CameraFile, Pinhole};
 use premio_predict::model::record::DescriptionRecord as Written;
 use premio_visibility::ViewCamera;
@@ -32,8 +34,8 @@ pub struct EvaluatedPart {
 pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedPart, CliError> {
     let voice = session.voice;
     let name = options.file.display().to_string();
-    let format = format(&options.file)?;
-    let text = session.limits.read(&options.file)?;
+    let DescriptionSource { format, text, how } =
+        description(&options.file, &options.reading, session)?;
     let written = Written {
         language: format.ending().to_owned(),
         // A file that is not text cannot be read either.
@@ -48,7 +50,6 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         true => Arithmetic::Extended,
         false => Arithmetic::Filtered,
     };
-    let how = options.reading.options(session.limits);
     let part = evaluated(name, format, written, &how, digits, voice)?;
     if let Some(recovery) = part.solid.recovery() {
         let text = recovery_note(recovery);
@@ -63,6 +64,32 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
     }
     voice.close_calls(&part.name, part.solid.resolution(), calls);
     Ok(part)
+}
+
+/// The text of a description, its language, and how it is read.
+pub struct DescriptionSource {
+    pub format: Format,
+    pub text: Vec<u8>,
+    pub how: ReadOptions,
+}
+
+/// Reads the text of a description. OpenSCAD flattens its own files, with the values of `-D`.
+pub fn description(
+    file: &Path,
+    reading: &ReadingOptions,
+    session: Session,
+) -> Result<DescriptionSource, CliError> {
+    let includes = Includes::new(SessionIncludes::new(session.limits));
+    let mut how = reading.options(includes);
+    if openscad::is_scad(file) {
+        let overrides = std::mem::take(&mut how.overrides);
+        let text = openscad::flattened(file, &overrides, session.limits, session.voice)?;
+        let format = Format::Csg;
+        return Ok(DescriptionSource { format, text, how });
+    }
+    let format = format(file)?;
+    let text = session.limits.read(file)?;
+    Ok(DescriptionSource { format, text, how })
 }
 
 /// What was recovered of a description, and how to take it as written.

@@ -1,14 +1,11 @@
 //! The options of every command.
 
 use crate::diagnostics::{CliError, Reporter};
-use crate::files::is_output;
 use clap::Args;
-use premio_csg::reader::{IncludeError, IncludeLoader, IncludePath};
 use std::collections::TryReserveError;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The reporter, and the limits of input.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,7 +78,7 @@ impl InputLimits {
     }
 
     /// The content of a file of at most so many bytes, or why it is not read.
-    fn read_at_most(&self, path: &Path, most: u64) -> Result<Vec<u8>, String> {
+    pub fn read_at_most(&self, path: &Path, most: u64) -> Result<Vec<u8>, String> {
         let failed = |e: &dyn std::fmt::Display| e.to_string();
         let mut file = File::open(path).map_err(|e| failed(&e))?;
         let too_long = || {
@@ -138,43 +135,6 @@ impl InputLimits {
             let name = path.display().to_string();
             CliError::in_bytes(&name, bytes, at..at + 1, &words)
         })
-    }
-}
-
-/// The loader of the files that a description includes. All of them count towards `--max-input`.
-#[derive(Debug)]
-pub struct SessionIncludes {
-    limits: InputLimits,
-    /// The number of bytes that may still be read.
-    left: AtomicU64,
-}
-
-impl SessionIncludes {
-    /// The loader within the limits.
-    pub fn new(limits: InputLimits) -> Self {
-        Self {
-            limits,
-            left: AtomicU64::new(limits.input),
-        }
-    }
-}
-
-impl IncludeLoader for SessionIncludes {
-    fn find(&self, including: Option<&str>, path: &str) -> Result<IncludePath, IncludeError> {
-        let found = premio::files::find_included(including, path)?;
-        match including.is_some() && is_output(Path::new(&found.name)) {
-            true => Err(IncludeError::new("it is an output of this command")),
-            false => Ok(found),
-        }
-    }
-
-    fn load(&self, file: &IncludePath) -> Result<Vec<u8>, IncludeError> {
-        let left = self.left.load(Ordering::Relaxed);
-        let read = self.limits.read_at_most(Path::new(&file.name), left);
-        let bytes = read.map_err(IncludeError::new)?;
-        let left = left.saturating_sub(bytes.len() as u64);
-        self.left.store(left, Ordering::Relaxed);
-        Ok(bytes)
     }
 }
 

@@ -58,9 +58,8 @@ const NOTHING_RECOVERED: &str = "no relation of primitives is recovered: the coo
     rounded by a program, or all relations are exact";
 
 fn source(name: &str, options: &ConvertOptions, session: Session) -> Result<Program, CliError> {
-    let format = input::format(&options.file)?;
-    let text = session.limits.read(&options.file)?;
-    let how = options.reading.options(session.limits);
+    let input::DescriptionSource { format, text, how } =
+        input::description(&options.file, &options.reading, session)?;
     let source = reader::parse(name, &text, format, &how).map_err(|e| CliError::read(&e, &text))?;
     session.voice.notes(name, &text, &source.notes);
     Ok(source)

@@ -54,6 +54,36 @@ impl FacetShape {
         angle > std::f64::consts::TAU
     }
 
+    /// The intervals of a line inside, by the facets that it enters and leaves; `None` if it passes
+    /// so close to an edge that rounding would decide.
+    pub fn clear_spans(
+        &self,
+        o: &Vector3<f64>,
+        d: &Vector3<f64>,
+        half: f64,
+    ) -> Option<Vec<[f64; 2]>> {
+        let mut crossings: Vec<(f64, bool)> = Vec::new();
+        for facet in &self.facets {
+            let across = facet.normal.dot(d);
+            let t = facet.normal.dot(&(facet.loops[0][0] - o)) / across;
+            let p = o + d * t;
+            match facet.place(&p) {
+                FacetPlace::Outside => {}
+                FacetPlace::Inside if t.abs() < half => crossings.push((t, across < 0.0)),
+                FacetPlace::Inside | FacetPlace::Unclear => return None,
+            }
+        }
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let alternate = crossings
+            .iter()
+            .enumerate()
+            .all(|(k, (_, enters))| *enters == (k % 2 == 0));
+        let spans = crossings
+            .chunks(2)
+            .map(|pair| Some([pair[0].0, pair.get(1)?.0]));
+        alternate.then(|| spans.collect())?
+    }
+
     /// Passes the parameters at which a line crosses a facet, or comes close to one, to `add`.
     pub fn crossings(&self, o: &Vector3<f64>, d: &Vector3<f64>, add: &mut dyn FnMut(f64)) {
         for facet in &self.facets {
@@ -68,7 +98,52 @@ impl FacetShape {
     }
 }
 
+/// Where a point of a facet's plane lies.
+enum FacetPlace {
+    Inside,
+    Outside,
+    /// Next to an edge.
+    Unclear,
+}
+
 impl FacetTriangles {
+    /// Where a point of its plane lies: the parity of the edges that a ray in the plane crosses.
+    fn place(&self, p: &Vector3<f64>) -> FacetPlace {
+        let [lo, hi] = self.bounds;
+        let size = (0..3).fold(0.0f64, |m, i| m.max(hi[i] - lo[i]));
+        let slack = size * f64::EPSILON.sqrt();
+        // A line along the plane has no point in it.
+        let is_far = |i: usize| !(lo[i] - slack <= p[i] && p[i] <= hi[i] + slack);
+        if (0..3).any(is_far) {
+            return match p.iter().all(|x| x.is_finite()) {
+                true => FacetPlace::Outside,
+                false => FacetPlace::Unclear,
+            };
+        }
+        let axis = self.normal.iamax();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut is_inside = false;
+        for corners in &self.loops {
+            let next = corners.iter().cycle().skip(1);
+            for (a, b) in corners.iter().zip(next) {
+                let along = b - a;
+                let t = (along.dot(&(p - a)) / along.norm_squared()).clamp(0.0, 1.0);
+                if (a + along * t - p).norm() <= slack {
+                    return FacetPlace::Unclear;
+                }
+                let side = (b[u] - a[u]) * (p[v] - a[v]) - (b[v] - a[v]) * (p[u] - a[u]);
+                let is_up = b[v] > p[v];
+                if (a[v] > p[v]) != is_up && (side > 0.0) == is_up {
+                    is_inside = !is_inside;
+                }
+            }
+        }
+        match is_inside {
+            true => FacetPlace::Inside,
+            false => FacetPlace::Outside,
+        }
+    }
+
     /// The solid angle that it covers at a point, negative from behind (Van Oosterom and Strackee
     /// 1983).
     fn solid_angle(&self, p: &Vector3<f64>) -> f64 {

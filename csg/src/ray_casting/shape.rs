@@ -131,6 +131,12 @@ impl Shape {
         let middle = 0.5 * (range[0] + range[1]);
         let half = 0.5 * (range[1] - range[0]);
         let c = o + d * middle;
+        if let Self::Facets(facets) = self
+            && let Some(clear) = facets.clear_spans(&c, d, half)
+        {
+            spans.extend(clear.iter().map(|span| span.map(|t| middle + t)));
+            return;
+        }
         let mut cuts = vec![-half];
         self.crossings(&c, d, half, &mut cuts);
         cuts.push(half);

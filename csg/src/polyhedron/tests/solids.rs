@@ -6,7 +6,7 @@ use crate::builder::{Builder, SolidId};
 use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use crate::figure::{Figure, FigureEdge};
 use crate::primitive::Primitive;
-use crate::ray_casting::RayOracle;
+use crate::ray_casting::{Ray, RayOracle};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::{Operation, Tree};
 use std::sync::Arc;
@@ -196,6 +196,31 @@ fn stars_that_share_faces_join() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// The intervals of a line agree with the solid angles at points of it, also where the line
+    /// passes through corners.
+    #[test]
+    fn lines_enter_and_leave(
+        from in prop::array::uniform3(-4i32..=4),
+        to in prop::array::uniform3(-4i32..=4),
+        off in prop::bool::ANY,
+    ) {
+        prop_assume!(from != to);
+        let tree = tree_of(|b| b.primitive(primitive(star())));
+        let rays = RayOracle::new(&tree);
+        let shift = if off { 1.0 / 64.0 } else { 0.0 };
+        let at = |p: [i32; 3]| nalgebra::Vector3::from(p.map(f64::from)).add_scalar(shift);
+        let (start, direction) = (at(from), at(to) - at(from));
+        let origin = start.into();
+        let inside = rays.intervals(&Ray { origin, direction }, 1e-9);
+        for k in -64..=64 {
+            let t = f64::from(k) / 16.0 + 1.0 / 37.0;
+            let near = inside.iter().flatten().any(|end| (end - t).abs() < 1e-6);
+            let held = inside.iter().any(|[lo, hi]| (*lo..=*hi).contains(&t));
+            let point = (start + direction * t).into();
+            prop_assert!(near || held == rays.contains(&point), "{} {:?}", t, inside);
+        }
+    }
     /// The hull of points is the intersection of the half spaces of its facets; here it is compared
     /// with the volume of the exact facets and with rays.
     #[test]

@@ -347,6 +347,20 @@ impl Primitive {
         Ok(Self::Revolution { figure, angle })
     }
 
+    /// The number of surfaces that bound it.
+    pub(crate) fn side_count(&self) -> usize {
+        match self {
+            Self::Block { .. } => 6,
+            Self::Wedge { .. } => 5,
+            Self::Cylinder { .. } | Self::Frustum { .. } => 3,
+            Self::Sphere { .. } | Self::Torus { .. } => 1,
+            Self::Prism { figure, .. } | Self::Revolution { figure, .. } => {
+                figure.edges().len() + 2
+            }
+            Self::Polyhedron { polyhedron } => polyhedron.faces().len(),
+        }
+    }
+
     /// Its lengths, in the order of its fields.
     pub(crate) fn lengths(&self) -> Vec<&Rational> {
         match self {

@@ -123,6 +123,24 @@ pub const MAX_ENTITIES: usize = 1 << 23;
 const FEW_IN_106_BITS: usize = 1024;
 const FEW_IN_237_BITS: usize = 64;
 
+/// The maximum number of surfaces for each primitive of such a tree, on average.
+const SIDES: usize = 6;
+
+/// The maximum number of surfaces of a tree of which the measures are computed in 106 bits.
+const FEW_TO_MEASURE: usize = 1024;
+
+/// The number of surfaces of all primitives of a tree.
+fn sides(tree: &Tree) -> usize {
+    tree.leaves()
+        .map(|leaf| leaf.1.primitive.side_count())
+        .sum()
+}
+
+/// Whether a tree has at most so many primitives, and not many more surfaces.
+fn is_small(tree: &Tree, few: usize) -> bool {
+    tree.leaves().count() <= few && sides(tree) <= SIDES * few
+}
+
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
 /// It is evaluated in f64, and if f64 is inconclusive, with the same resolution in 106 bits, and at
@@ -183,8 +201,8 @@ fn finer_measures(
     options: &EvaluationOptions,
     known: &Evaluated<f64>,
 ) -> Option<Evaluated<F106>> {
-    let is_asked = known.measures.precision().is_beyond(RELATIVE_RESOLUTION)
-        && tree.leaves().count() <= FEW_IN_106_BITS;
+    let is_asked =
+        known.measures.precision().is_beyond(RELATIVE_RESOLUTION) && sides(tree) <= FEW_TO_MEASURE;
     let fine = is_asked.then(|| evaluated::<F106>(tree, options).ok())??;
     let census = known.brep.topology.census();
     (fine.brep.topology.census() == census).then_some(fine)
@@ -207,14 +225,14 @@ fn exact_evaluation(
 
 /// Whether more bits may succeed on a tree, and do so in reasonable time.
 fn is_worth_more_bits(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
-    error.is_of_rounding() && tree.leaves().count() <= few
+    error.is_of_rounding() && is_small(tree, few)
 }
 
 /// The close call because of which a part is empty in f64 but a solid in more bits.
 fn vanished(tree: &Tree, known: &Evaluated<f64>, noise: Option<f64>) -> Option<CloseCall> {
     let is_asked = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
-        && tree.leaves().count() <= FEW_IN_106_BITS;
+        && is_small(tree, FEW_IN_106_BITS);
     let mass = is_asked.then(|| fine_mass(tree).ok())??;
     let written = noise.unwrap_or(0.0) * known.bounds.diagonal();
     let noise = vanished::rounding(tree, &known.bounds).max(written);

@@ -118,11 +118,11 @@ fn messages() {
             "{\"prim\": \"sphere\", \"r\": 1, \"radius\": 2}",
         ),
         ("number.json", "{\"prim\": \"sphere\", \"r\": \"one\"}"),
-        ("facets.csg", "sphere($fn = 6, r = 2);\n"),
-        ("node.csg", "group() { hull() { cube(size = 1); } }\n"),
+        ("facets.csg", "rotate_extrude($fn = 8) { circle(r = 2); }\n"),
+        ("node.csg", "group() { roof() { square(size = 1); } }\n"),
         (
             "skew.csg",
-            "multmatrix([[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { cube(size = 1); }\n",
+            "multmatrix([[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere(r = 1); }\n",
         ),
         ("bytes.padl", "A = \u{1}\u{7f}@\n"),
     ] {

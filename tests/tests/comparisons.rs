@@ -55,6 +55,14 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "csg/src/figure",
         "exact numbers behind a filter with an error bound, and the validity of a description",
     ),
+    (
+        "csg/src/polyhedron",
+        "exact numbers behind a filter with an error bound, and the validity of a description",
+    ),
+    (
+        "csg/src/construction",
+        "exact numbers, before anything is intersected",
+    ),
     ("drawing/src", "drawing after all decisions"),
 ];
 

@@ -8,6 +8,7 @@ mod arrangement;
 mod carrier;
 mod chain;
 mod convex_hull;
+mod error;
 mod minkowski;
 mod offset;
 mod outline;
@@ -20,6 +21,7 @@ mod straightened;
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
 pub use convex_hull::Disc;
+pub use error::FigureError;
 pub use offset::OffsetJoin;
 pub use outline::ContourCorner;
 pub(crate) use scalar::direction;
@@ -95,54 +97,6 @@ pub struct FigureEdge {
     pub end: FigurePoint,
     /// The circle of an arc; `None` for a line segment.
     pub arc: Option<FigureArc>,
-}
-
-/// Why contours bound no figure.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FigureError {
-    /// There are too many edges.
-    #[error("a figure of {count} edges; the limit is {MAX_EDGES}")]
-    TooManyEdges {
-        /// The number of edges.
-        count: usize,
-    },
-    /// An arc crosses another edge.
-    #[error("an arc crosses another edge near ({x}, {y})", x = at[0], y = at[1])]
-    ArcCrosses {
-        /// The rounded place.
-        at: [String; 2],
-    },
-    /// An end of an arc is not on its circle.
-    #[error("an arc from a point that is not on its circle")]
-    OffCircle,
-    /// A factor or matrix does not map circles to circles.
-    #[error("a map that makes ellipses of arcs")]
-    Elliptic,
-    /// An arc crosses the axis of a revolution, and its centre is not on the axis.
-    #[error("an arc that crosses the axis, with its centre elsewhere")]
-    ArcAcrossAxis,
-    /// Too many edges cross or are close to each other.
-    #[error("a figure of {count} edges of which too many cross or are close to each other")]
-    TooComplex {
-        /// The number of edges.
-        count: usize,
-    },
-    /// Edges are so close that it is unclear which of them are one.
-    #[error("edges nearly coincide near ({x}, {y}), closer than a figure is known", x = at[0], y = at[1])]
-    Undecided {
-        /// The rounded place.
-        at: [String; 2],
-    },
-    /// The convex hull has an arc that no figure has.
-    #[error("a convex hull of arcs that end before the hull's arc does")]
-    NoHull,
-    /// A Minkowski sum is not supported.
-    #[error("a Minkowski sum of figures of which none is a disc or a convex polygon")]
-    NoSum,
-    /// The region is empty.
-    #[error("a figure without area")]
-    Empty,
 }
 
 /// A linear map of the plane and an offset.

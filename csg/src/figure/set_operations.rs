@@ -1,7 +1,7 @@
 //! Set operations on figures: pieces of their edges with material on one side only.
 
 use super::arrangement::{Arrangement, Piece, undecided};
-use super::carrier::{Point, SupportedEdge, cross, dot};
+use super::carrier::{Point, SupportedEdge, cross, dot, nearest};
 use super::{ArcTurn, Figure, FigureEdge, FigureError};
 use premio_kernel::number::double_double::F106;
 use premio_kernel::number::float::Float;
@@ -365,7 +365,39 @@ fn joined(directed: &Directed<'_>, mut contour: Vec<usize>) -> Vec<FigureEdge> {
     contour.rotate_left(start);
     let runs = contour.chunk_by(|&a, &b| directed.continues(a, b));
     let edges = runs.map(|run| directed.edge(run[0], run[run.len() - 1]));
-    super::chain::joined(edges.collect())
+    let edges = super::chain::joined(edges.collect());
+    straight(edges, directed.arrangement.tolerance)
+}
+
+/// The edges of a closed contour with segments joined that are in line within the tolerance, such
+/// as those of strips along one edge.
+fn straight(edges: Vec<FigureEdge>, tolerance: F106) -> Vec<FigureEdge> {
+    let is_in_line = |edge: &FigureEdge, next: &FigureEdge| {
+        if edge.arc.is_some() || next.arc.is_some() || edge.end != next.start {
+            return false;
+        }
+        let whole = SupportedEdge::new(&FigureEdge::line(edge.start.clone(), next.end.clone()));
+        let middle = nearest(&edge.end);
+        let at = whole.parameter(middle);
+        at.is_above_zero()
+            && at.is_short_of(whole.sweep())
+            && whole.distance(middle).is_at_most(tolerance)
+    };
+    let mut kept: Vec<FigureEdge> = Vec::with_capacity(edges.len());
+    for edge in edges {
+        match kept.last_mut() {
+            Some(last) if is_in_line(last, &edge) => last.end = edge.end,
+            _ => kept.push(edge),
+        }
+    }
+    while let [first, .., last] = &kept[..]
+        && kept.len() > 2
+        && is_in_line(last, first)
+    {
+        kept[0].start = last.start.clone();
+        kept.pop();
+    }
+    kept
 }
 
 #[cfg(test)]

@@ -117,6 +117,19 @@ fn offsets_round_miter_and_chamfer_corners() {
 }
 
 #[test]
+fn an_offset_polygon_has_one_edge_for_each() {
+    let corner = |k: u32| direction(&(n(72) * Rational::from(k)));
+    let pentagon = Figure::polygon(&[(0..5).map(corner).collect()]).unwrap();
+    let by = Rational::ONE / n(10);
+    let grown = |join| pentagon.offset(&by, join).unwrap().edges().len();
+    assert_eq!(grown(OffsetJoin::Miter), 5);
+    assert_eq!(grown(OffsetJoin::Chamfer), 10);
+    assert_eq!(grown(OffsetJoin::Round), 10);
+    let shrunk = pentagon.offset(&-by, OffsetJoin::Round).unwrap();
+    assert_eq!(shrunk.edges().len(), 5);
+}
+
+#[test]
 fn a_fillet_is_an_offset_back_and_forth() {
     let ell = Figure::polygon(&[[[0, 0], [6, 0], [6, 2], [2, 2], [2, 6], [0, 6]]
         .map(|p| p.map(n))

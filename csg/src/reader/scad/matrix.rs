@@ -9,7 +9,7 @@ use super::super::error::SpannedError;
 use super::super::notes::Notes;
 use super::super::rigid_fit::{NotRigid, Placement, placement};
 use super::arguments::{Argument, Arguments};
-use super::nodes::construction_error;
+use super::refusal::construction_error;
 use super::region::Region;
 use crate::builder::{Builder, SolidId};
 use crate::construction::{AffineMap, mapped};

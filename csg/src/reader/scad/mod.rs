@@ -12,6 +12,7 @@
 //! | `twist` | extrusions that are made of slices |
 //! | `sweep` | extrusions and revolutions |
 //! | `matrix` | motions and scales |
+//! | `refusal` | the errors of what has no exact result |
 //! | `nodes` | the meaning of every node |
 
 mod arguments;
@@ -20,6 +21,7 @@ mod figures;
 mod matrix;
 mod measures;
 mod nodes;
+mod refusal;
 mod region;
 mod shapes;
 mod sweep;

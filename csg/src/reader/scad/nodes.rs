@@ -15,6 +15,7 @@ use super::facets::FacetRule;
 use super::figures::{self, bad_figure};
 use super::matrix::Matrix;
 use super::measures::Shape;
+use super::refusal::construction_error;
 use super::region::Region;
 use super::shapes;
 use super::sweep::{Raise, Spin, operation};
@@ -489,27 +490,6 @@ fn constructed(
         Err(error) if error.is_empty() => Ok(None),
         Err(error) => Err(construction_error(&error, span)),
     }
-}
-
-/// The error of a construction without an exact result.
-pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>) -> SpannedError {
-    let expected = match error {
-        ConstructionError::NotUnion(_) => "a union of shapes",
-        ConstructionError::NoHull => {
-            "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and \
-             prisms between the same two planes"
-        }
-        ConstructionError::NoSum => {
-            "a ball with any shape, prisms and cylinders of one direction, or convex shapes with \
-             plane faces"
-        }
-        ConstructionError::Elliptic => {
-            "a scale along the axis of a cylinder, equal in all directions, or of plane faces"
-        }
-        ConstructionError::NoProjection(_) => "a result of segments and arcs",
-        _ => "a valid shape",
-    };
-    SpannedError::input(span.clone(), error.to_string(), expected)
 }
 
 fn unknown(name: &str, place: Lexeme) -> SpannedError {

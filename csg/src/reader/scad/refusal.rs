@@ -1,0 +1,27 @@
+//! The errors of constructions without an exact result.
+
+use std::ops::Range;
+
+use super::super::error::SpannedError;
+use crate::construction::ConstructionError;
+
+/// The error of a construction without an exact result.
+pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>) -> SpannedError {
+    let expected = match error {
+        ConstructionError::NotUnion(_) => "a union of shapes",
+        ConstructionError::NoHull => {
+            "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and \
+             prisms between the same two planes"
+        }
+        ConstructionError::NoSum => {
+            "a ball with any shape, prisms and cylinders of one direction, or convex shapes with \
+             plane faces"
+        }
+        ConstructionError::Elliptic => {
+            "a scale along the axis of a cylinder, equal in all directions, or of plane faces"
+        }
+        ConstructionError::NoProjection(_) => "a result of segments and arcs",
+        _ => "a valid shape",
+    };
+    SpannedError::input(span.clone(), error.to_string(), expected)
+}

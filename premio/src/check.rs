@@ -12,7 +12,7 @@ pub(crate) fn checked(tree: &Tree, evaluation: &Evaluation, rays: usize) -> Chec
 
 /// The contours of a solid, or what rays found that contradicts them.
 pub(crate) enum ConfirmedContours {
-    Confirmed(Contours),
+    Confirmed(Box<Contours>),
     Contradicted(String),
 }
 
@@ -24,11 +24,13 @@ pub(crate) fn confirmed_contours(
 ) -> Result<ConfirmedContours, ViewError> {
     let contours = |resolution| premio_visibility::contours(&evaluation.brep, camera, resolution);
     if let Some(resolution) = evaluation.view_resolution() {
-        return contours(resolution).map(ConfirmedContours::Confirmed);
+        return contours(resolution)
+            .map(Box::new)
+            .map(ConfirmedContours::Confirmed);
     }
     let seen = contours(evaluation.rounded_view_resolution())?;
     Ok(match Checker::new(tree, evaluation).contradiction(&seen) {
         Some(detail) => ConfirmedContours::Contradicted(detail),
-        None => ConfirmedContours::Confirmed(seen),
+        None => ConfirmedContours::Confirmed(Box::new(seen)),
     })
 }

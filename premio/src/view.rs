@@ -55,7 +55,7 @@ impl View {
     pub(crate) fn new(solid: &Solid, camera: &Camera) -> Result<Self> {
         let camera = camera.resolve(solid)?;
         let contours = match confirmed_contours(solid.tree(), solid.evaluation(), &camera)? {
-            ConfirmedContours::Confirmed(contours) => contours,
+            ConfirmedContours::Confirmed(contours) => *contours,
             ConfirmedContours::Contradicted(detail) => {
                 return Err(Error::UncertainView { detail });
             }

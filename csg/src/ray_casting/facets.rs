@@ -12,6 +12,13 @@ pub(super) struct FacetShape {
     bounds: [[f64; 3]; 2],
 }
 
+/// Directions in which a line rarely passes through an edge.
+const DIRECTIONS: [[f64; 3]; 3] = [
+    [0.612, 0.347, 0.711],
+    [-0.283, 0.871, 0.402],
+    [0.751, -0.193, -0.631],
+];
+
 /// A facet: signed triangles whose sum is the facet.
 #[derive(Clone, Debug)]
 struct FacetTriangles {
@@ -48,10 +55,32 @@ impl FacetShape {
         planes.map(|facet| (facet.loops[0][0], facet.normal))
     }
 
-    /// Whether a point is inside: whether the facets cover more than half of the directions.
+    /// Whether a point is inside: by a line that passes clear of all edges, or else by whether the
+    /// facets cover more than half of the directions.
     pub fn contains(&self, p: &Vector3<f64>) -> bool {
+        let clear = DIRECTIONS
+            .iter()
+            .find_map(|d| self.is_inside_along(p, &Vector3::from(*d)));
+        if let Some(is_inside) = clear {
+            return is_inside;
+        }
         let angle: f64 = self.facets.iter().map(|facet| facet.solid_angle(p)).sum();
         angle > std::f64::consts::TAU
+    }
+
+    /// Whether a point is inside, by the number of facets in a direction; `None` if the point is on
+    /// a facet's plane or the line passes close to an edge.
+    fn is_inside_along(&self, p: &Vector3<f64>, d: &Vector3<f64>) -> Option<bool> {
+        let mut is_inside = false;
+        for facet in &self.facets {
+            let t = facet.normal.dot(&(facet.loops[0][0] - p)) / facet.normal.dot(d);
+            match facet.place(&(p + d * t)) {
+                FacetPlace::Outside => {}
+                FacetPlace::Inside if t.abs() > facet.slack() => is_inside ^= t > 0.0,
+                FacetPlace::Inside | FacetPlace::Unclear => return None,
+            }
+        }
+        Some(is_inside)
     }
 
     /// The intervals of a line inside, by the facets that it enters and leaves; `None` if it passes
@@ -107,11 +136,16 @@ enum FacetPlace {
 }
 
 impl FacetTriangles {
-    /// Where a point of its plane lies: the parity of the edges that a ray in the plane crosses.
-    fn place(&self, p: &Vector3<f64>) -> FacetPlace {
+    /// The distance from an edge within which rounding may decide.
+    fn slack(&self) -> f64 {
         let [lo, hi] = self.bounds;
         let size = (0..3).fold(0.0f64, |m, i| m.max(hi[i] - lo[i]));
-        let slack = size * f64::EPSILON.sqrt();
+        size * f64::EPSILON.sqrt()
+    }
+
+    /// Where a point of its plane lies: the parity of the edges that a ray in the plane crosses.
+    fn place(&self, p: &Vector3<f64>) -> FacetPlace {
+        let ([lo, hi], slack) = (self.bounds, self.slack());
         // A line along the plane has no point in it.
         let is_far = |i: usize| !(lo[i] - slack <= p[i] && p[i] <= hi[i] + slack);
         if (0..3).any(is_far) {

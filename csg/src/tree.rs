@@ -116,6 +116,12 @@ impl Tree {
         self.root.is_none()
     }
 
+    /// The number of surfaces of all primitives.
+    pub(crate) fn side_count(&self) -> usize {
+        let counts = self.leaves().map(|leaf| leaf.1.primitive.side_count());
+        counts.sum()
+    }
+
     /// The placed primitives, in the order written.
     pub fn leaves(&self) -> impl Iterator<Item = (NodeId, &PlacedPrimitive)> {
         let nodes = self.nodes.iter().enumerate();

@@ -67,7 +67,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
 ];
 
 /// Calls that return integers.
-const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits"];
+const WHOLE_CALLS: &[&str] = &["len", "count", "index", "degree", "bits", "side_count"];
 
 /// Names that always denote integers.
 const WHOLE_NAMES: &[&str] = &[

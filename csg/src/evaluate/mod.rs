@@ -129,16 +129,9 @@ const SIDES: usize = 6;
 /// The maximum number of surfaces of a tree of which the measures are computed in 106 bits.
 const FEW_TO_MEASURE: usize = 1024;
 
-/// The number of surfaces of all primitives of a tree.
-fn sides(tree: &Tree) -> usize {
-    tree.leaves()
-        .map(|leaf| leaf.1.primitive.side_count())
-        .sum()
-}
-
 /// Whether a tree has at most so many primitives, and not many more surfaces.
 fn is_small(tree: &Tree, few: usize) -> bool {
-    tree.leaves().count() <= few && sides(tree) <= SIDES * few
+    tree.leaves().count() <= few && tree.side_count() <= SIDES * few
 }
 
 /// The boundary of the solid that a tree describes; empty for an empty solid.
@@ -201,8 +194,8 @@ fn finer_measures(
     options: &EvaluationOptions,
     known: &Evaluated<f64>,
 ) -> Option<Evaluated<F106>> {
-    let is_asked =
-        known.measures.precision().is_beyond(RELATIVE_RESOLUTION) && sides(tree) <= FEW_TO_MEASURE;
+    let is_asked = known.measures.precision().is_beyond(RELATIVE_RESOLUTION)
+        && tree.side_count() <= FEW_TO_MEASURE;
     let fine = is_asked.then(|| evaluated::<F106>(tree, options).ok())??;
     let census = known.brep.topology.census();
     (fine.brep.topology.census() == census).then_some(fine)

@@ -70,12 +70,14 @@ struct OpenWall<N: Float = f64> {
     away: Option<Vector3<N>>,
 }
 
-/// Joins walls that continue each other on one carrier: a curve along both passes their common end.
+/// Joins walls that continue each other on one carrier, as a curve along both passes their common
+/// end. Of walls that cover each other one stays.
 fn join_walls<N: Float>(walls: &mut Vec<OpenWall<N>>) {
     let mut joined: Vec<OpenWall<N>> = Vec::with_capacity(walls.len());
     for wall in walls.drain(..) {
         let is_same = |w: &&mut OpenWall<N>| w.carrier == wall.carrier && w.side == wall.side;
         match joined.iter_mut().find(is_same) {
+            Some(known) if known.covers(&wall) => {}
             Some(known) => known.away = None,
             None => joined.push(wall),
         }
@@ -84,6 +86,15 @@ fn join_walls<N: Float>(walls: &mut Vec<OpenWall<N>>) {
 }
 
 impl<N: Float> OpenWall<N> {
+    /// Whether it extends from the piece wherever another wall on its carrier does.
+    fn covers(&self, other: &Self) -> bool {
+        match (self.away, other.away) {
+            (Some(own), Some(away)) => own.dot(&away).is_above_zero(),
+            (None, _) => true,
+            (Some(_), None) => false,
+        }
+    }
+
     /// Whether a half sheet is part of the wall.
     fn has(&self, sheet: &HalfSheet<N>) -> bool {
         let extends = |away: &Vector3<N>| away.dot(&sheet.direction).is_above_zero();
@@ -333,8 +344,9 @@ impl<N: Float> Classifier<'_, N> {
         // Whether each section contains the sector: the last sheet before it that is part of one of
         // its walls determines that.
         let within_after = |near: &Near<N>, sheet: &HalfSheet<N>| {
-            let wall = near.walls.iter().find(|wall| wall.has(sheet))?;
-            Some(sheet.beyond == wall.side)
+            let mut walls = near.walls.iter().filter(|wall| wall.has(sheet)).peekable();
+            walls.peek()?;
+            Some(walls.any(|wall| sheet.beyond == wall.side))
         };
         let last = |near: &Near<N>| sheets.iter().rev().find_map(|s| within_after(near, s));
         let mut within: Vec<bool> = near.iter().map(|n| last(n).unwrap_or(true)).collect();

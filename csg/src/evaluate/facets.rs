@@ -102,15 +102,22 @@ impl<N: Float> Facets<N> {
         self.is_inside(&self.local(p))
     }
 
-    /// The parity of the facets above a point.
+    /// Whether more of the facets above a point face up than down.
     fn is_inside(&self, p: &Point3<N>) -> bool {
         let [x, y, z] = rounded(p);
         let (low, high) = ([x, y, z], [x, y, self.top.max(z)]);
         let above = self
             .index
             .locate_in_envelope_intersecting(AABB::from_corners(low, high));
-        let above = above.filter(|facet| self.is_below(p, &self.all[facet.data]));
-        above.count() % 2 == 1
+        let facets = above.map(|facet| &self.all[facet.data]);
+        let crossed = facets.filter(|facet| self.is_below(p, facet));
+        let winding: i64 = crossed
+            .map(|facet| match facet.normal.z.is_above_zero() {
+                true => 1,
+                false => -1,
+            })
+            .sum();
+        winding > 0
     }
 
     /// Whether the ray from a point along z crosses a facet. Edges of two facets are evaluated the

@@ -68,19 +68,23 @@ impl FacetShape {
         angle > std::f64::consts::TAU
     }
 
-    /// Whether a point is inside, by the number of facets in a direction; `None` if the point is on
-    /// a facet's plane or the line passes close to an edge.
+    /// Whether a point is inside: whether more facets face forwards than backwards in a direction;
+    /// `None` if the point is on a facet or the line passes close to an edge.
     fn is_inside_along(&self, p: &Vector3<f64>, d: &Vector3<f64>) -> Option<bool> {
-        let mut is_inside = false;
+        let mut winding = 0;
         for facet in &self.facets {
-            let t = facet.normal.dot(&(facet.loops[0][0] - p)) / facet.normal.dot(d);
+            let across = facet.normal.dot(d);
+            let t = facet.normal.dot(&(facet.loops[0][0] - p)) / across;
             match facet.place(&(p + d * t)) {
                 FacetPlace::Outside => {}
-                FacetPlace::Inside if t.abs() > facet.slack() => is_inside ^= t > 0.0,
+                FacetPlace::Inside if t > facet.slack() => {
+                    winding += if across > 0.0 { 1 } else { -1 };
+                }
+                FacetPlace::Inside if t < -facet.slack() => {}
                 FacetPlace::Inside | FacetPlace::Unclear => return None,
             }
         }
-        Some(is_inside)
+        Some(winding > 0)
     }
 
     /// The intervals of a line inside, by the facets that it enters and leaves; `None` if it passes

@@ -173,6 +173,49 @@ fn a_star_is_cut_like_any_solid() {
     }
 }
 
+/// The corners and faces of cubes with an edge of 2.
+fn cubes(at: &[[i32; 3]]) -> Polyhedron {
+    let (mut corners, mut faces) = (Vec::new(), Vec::new());
+    for shift in at {
+        let one = Polyhedron::convex_hull(&cube()).unwrap();
+        let first = corners.len();
+        let moved = one
+            .points()
+            .iter()
+            .map(|p| [0, 1, 2].map(|i| &p[i] + n(shift[i])));
+        corners.extend(moved);
+        let shifted = one
+            .faces()
+            .iter()
+            .map(|face| PolyhedronFace::simple(face.corners().map(|i| i + first).collect()));
+        faces.extend(shifted);
+    }
+    Polyhedron::from_faces(&corners, &faces).unwrap().polyhedron
+}
+
+#[test]
+fn faces_that_are_written_twice_count_once() {
+    let tree = tree_of(|b| b.primitive(primitive(cubes(&[[0, 0, 0], [0, 0, 0]]))));
+    let known = evaluated(&tree);
+    assert!((known.mass().volume - 8.0).abs() < 1e-12);
+    assert_eq!(known.brep.topology.census().cells, [8, 12, 6, 6]);
+    let rays = RayOracle::new(&tree).volume(4096, 1);
+    assert!(rays.deviation(8.0, 1e-9) < 6.0, "{rays:?}");
+}
+
+#[test]
+fn faces_that_cross_are_refused() {
+    for at in [[1, 1, 1], [1, 0, 0], [0, 1, 1]] {
+        let tree = tree_of(|b| b.primitive(primitive(cubes(&[[0, 0, 0], at]))));
+        assert!(
+            evaluate(&tree, &EvaluationOptions::default()).is_err(),
+            "{at:?}"
+        );
+    }
+    let touching = tree_of(|b| b.primitive(primitive(cubes(&[[0, 0, 0], [2, 0, 0]]))));
+    assert!((evaluated(&touching).mass().volume - 16.0).abs() < 1e-12);
+}
+
 #[test]
 fn stars_that_share_faces_join() {
     // The mirror image at a plane through tips: the stars touch along edges and in faces.

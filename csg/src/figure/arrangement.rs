@@ -116,7 +116,7 @@ impl Arrangement {
     fn divided(&self, on: &[Vec<usize>], of: &[usize]) -> Vec<Piece> {
         let mut known: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
         let mut pieces: Vec<Piece> = Vec::new();
-        let apart = F106::from_f64(SPREAD) * self.tolerance;
+        let apart = F106::TWO * self.tolerance;
         for (index, source) in self.sources.iter().enumerate() {
             let mut stops: Vec<(F106, usize)> = on[index]
                 .iter()

@@ -195,6 +195,32 @@ impl SupportedEdge {
         }
     }
 
+    /// Its share of the winding number about a point: that of the chord, and that of the segment
+    /// between the chord and the arc.
+    pub fn winding(&self, p: Point) -> i32 {
+        let side = cross(minus(self.end, self.start), minus(p, self.start));
+        let is_above = |q: Point| q[1].is_beyond(p[1]);
+        let chord = match (is_above(self.start), is_above(self.end)) {
+            (false, true) if side.is_above_zero() => 1,
+            (true, false) if !side.is_above_zero() => -1,
+            _ => 0,
+        };
+        let Support::Circle {
+            centre,
+            radius,
+            turn,
+        } = self.support
+        else {
+            return chord;
+        };
+        let is_within = length(minus(p, centre)).is_short_of(radius);
+        match turn {
+            ArcTurn::Counterclockwise if is_within && !side.is_above_zero() => chord + 1,
+            ArcTurn::Clockwise if is_within && side.is_above_zero() => chord - 1,
+            _ => chord,
+        }
+    }
+
     /// The common points of the supports of two edges. Supports that come closer than the tolerance
     /// without crossing touch in a point.
     pub fn common(&self, other: &Self, tolerance: F106) -> Common {

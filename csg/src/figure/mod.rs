@@ -296,12 +296,14 @@ impl Figure {
 
     /// The figure with its holes filled.
     pub(crate) fn filled(&self) -> Self {
-        let area = |contour: &[FigureEdge]| contour.iter().map(FigureEdge::area).sum::<f64>();
         let mut figure = Self {
             edges: Vec::new(),
             contours: Vec::new(),
         };
-        for contour in self.contours().filter(|contour| area(contour) > 0.0) {
+        for contour in self
+            .contours()
+            .filter(|contour| contour_area(contour) > 0.0)
+        {
             figure.contours.push(figure.edges.len());
             figure.edges.extend_from_slice(contour);
         }
@@ -396,7 +398,7 @@ impl Figure {
 
     /// Its area, in f64.
     pub fn area(&self) -> f64 {
-        self.edges.iter().map(FigureEdge::area).sum()
+        self.contours().map(contour_area).sum()
     }
 
     /// The least and the greatest corner of its bounding box, in f64.
@@ -419,6 +421,15 @@ impl Figure {
             edge.start.iter().chain(arc)
         })
     }
+}
+
+/// The area that a contour encloses, negative if it runs clockwise.
+fn contour_area(contour: &[FigureEdge]) -> f64 {
+    let Some(first) = contour.first() else {
+        return 0.0;
+    };
+    let areas = contour.iter().map(|edge| edge.area_about(&first.start));
+    areas.sum()
 }
 
 /// The corners of a contour clipped to x >= 0 (Sutherland and Hodgman 1974). Segments along the
@@ -533,9 +544,10 @@ impl FigureEdge {
         }
     }
 
-    /// The area between the edge and the origin.
-    fn area(&self) -> f64 {
-        let [s, e] = [&self.start, &self.end].map(|p| p.each_ref().map(to_f64));
+    /// The area between the edge and a point. About a point of the contour it keeps its digits.
+    fn area_about(&self, from: &FigurePoint) -> f64 {
+        let ends = [&self.start, &self.end];
+        let [s, e] = ends.map(|p| [0, 1].map(|i| to_f64(&(&p[i] - &from[i]))));
         let chord = 0.5 * (s[0] * e[1] - s[1] * e[0]);
         let segment = self.arc.as_ref().map_or(0.0, |arc| {
             let (angle, r) = (self.turned(arc), to_f64(&arc.radius));

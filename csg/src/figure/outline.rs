@@ -4,6 +4,7 @@
 //! cancel. Then each contour is turned such that the material is on its left.
 
 use super::chain::joined;
+use super::contour_area;
 use super::polygonal::{self, Line};
 use super::scalar::is_in_sector;
 use super::{ArcTurn, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, MAX_EDGES};
@@ -105,7 +106,6 @@ fn with_arcs(contours: Vec<Vec<FigureEdge>>) -> Result<Figure, FigureError> {
         edges: Vec::new(),
         contours: Vec::new(),
     };
-    let area = |contour: &[FigureEdge]| contour.iter().map(FigureEdge::area).sum::<f64>();
     let mut first = 0;
     for contour in &contours {
         let own = first..first + contour.len();
@@ -119,7 +119,7 @@ fn with_arcs(contours: Vec<Vec<FigureEdge>>) -> Result<Figure, FigureError> {
             .count();
         let is_hole = around % 2 == 1;
         figure.contours.push(figure.edges.len());
-        match (area(contour) < 0.0) == is_hole {
+        match (contour_area(contour) < 0.0) == is_hole {
             true => figure.edges.extend(contour.iter().cloned()),
             false => {
                 let backwards = contour.iter().rev().map(FigureEdge::reversed);

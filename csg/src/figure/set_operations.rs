@@ -2,11 +2,10 @@
 
 use super::arrangement::{Arrangement, Piece, undecided};
 use super::carrier::{Point, SupportedEdge, cross, dot, nearest};
-use super::{ArcTurn, Figure, FigureEdge, FigureError};
+use super::{Figure, FigureEdge, FigureError};
 use premio_kernel::number::double_double::F106;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
-use premio_kernel::number::rational::to_f64;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::BTreeMap;
@@ -75,8 +74,7 @@ impl Figure {
             let count = arrangement.sources.len();
             return Err(FigureError::TooComplex { count });
         }
-        let outlines: Vec<Outline<'_>> =
-            figures.iter().map(|figure| Outline::new(figure)).collect();
+        let outlines: Vec<Outline> = figures.iter().map(|figure| Outline::new(figure)).collect();
         let mut kept = Vec::new();
         for (index, piece) in arrangement.pieces.iter().enumerate() {
             let [left, right] = sides(&arrangement, piece, &outlines)?;
@@ -108,43 +106,23 @@ impl Figure {
 }
 
 /// A figure for tests whether it contains points.
-struct Outline<'a> {
-    edges: &'a [FigureEdge],
-    near: Vec<NearEdge>,
+struct Outline {
+    edges: Vec<SupportedEdge>,
     bounds: [[f64; 2]; 2],
     /// The boxes of the edges.
     index: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
 }
 
-/// An edge in f64.
-struct NearEdge {
-    start: [f64; 2],
-    end: [f64; 2],
-    circle: Option<([f64; 2], f64, ArcTurn)>,
-    bounds: [[f64; 2]; 2],
-}
-
-impl<'a> Outline<'a> {
-    fn new(figure: &'a Figure) -> Self {
-        let near = |edge: &FigureEdge| NearEdge {
-            start: edge.start.each_ref().map(to_f64),
-            end: edge.end.each_ref().map(to_f64),
-            circle: edge.arc.as_ref().map(|arc| {
-                let centre = arc.centre.each_ref().map(to_f64);
-                (centre, to_f64(&arc.radius), arc.turn)
-            }),
-            bounds: edge.bounds(),
-        };
-        let near: Vec<NearEdge> = figure.edges.iter().map(near).collect();
-        let boxes = near.iter().enumerate().map(|(k, edge)| {
-            let [lo, hi] = edge.bounds;
+impl Outline {
+    fn new(figure: &Figure) -> Self {
+        let boxes = figure.edges.iter().enumerate().map(|(k, edge)| {
+            let [lo, hi] = edge.bounds();
             GeomWithData::new(Rectangle::from_corners(lo, hi), k)
         });
         Self {
-            edges: &figure.edges,
-            index: RTree::bulk_load(boxes.collect()),
-            near,
+            edges: figure.edges.iter().map(SupportedEdge::new).collect(),
             bounds: figure.bounds(),
+            index: RTree::bulk_load(boxes.collect()),
         }
     }
 
@@ -152,51 +130,20 @@ impl<'a> Outline<'a> {
     fn contains(&self, at: Point, tolerance: F106) -> Option<bool> {
         let p = at.map(F106::rounded);
         let reach = 2.0 * tolerance.above();
-        let is_in = |[lo, hi]: [[f64; 2]; 2]| {
-            (0..2).all(|i| lo[i] - reach <= p[i] && p[i] <= hi[i] + reach)
-        };
-        if !is_in(self.bounds) {
-            return Some(false);
-        }
-        let mut winding = 0;
         // Edges to the left, above or below wind by nothing.
         let ray = AABB::from_corners(
             p.map(|x| x - reach),
-            [self.bounds[1][0] + reach, p[1] + reach],
+            [self.bounds[1][0].max(p[0]) + reach, p[1] + reach],
         );
+        let mut winding = 0;
         for found in self.index.locate_in_envelope_intersecting(ray) {
-            let (edge, near) = (&self.edges[found.data], &self.near[found.data]);
-            if is_in(near.bounds) && SupportedEdge::new(edge).distance(at).is_at_most(tolerance) {
+            let edge = &self.edges[found.data];
+            if edge.distance(at).is_at_most(tolerance) {
                 return None;
             }
-            winding += near.winding(p);
+            winding += edge.winding(at);
         }
         Some(winding != 0)
-    }
-}
-
-impl NearEdge {
-    /// Its share of the winding number about a point: that of the chord, and that of the segment
-    /// between the chord and the arc.
-    fn winding(&self, [x, y]: [f64; 2]) -> i32 {
-        let (s, e) = (self.start, self.end);
-        let side = (e[0] - s[0]) * (y - s[1]) - (e[1] - s[1]) * (x - s[0]);
-        let chord = match (s[1] <= y, e[1] <= y) {
-            (true, false) if side > 0.0 => 1,
-            (false, true) if side <= 0.0 => -1,
-            _ => 0,
-        };
-        let Some((c, r, turn)) = self.circle else {
-            return chord;
-        };
-        if (x - c[0]).hypot(y - c[1]) >= r {
-            return chord;
-        }
-        match turn {
-            ArcTurn::Counterclockwise if side <= 0.0 => chord + 1,
-            ArcTurn::Clockwise if side > 0.0 => chord - 1,
-            _ => chord,
-        }
     }
 }
 
@@ -204,7 +151,7 @@ impl NearEdge {
 fn sides(
     arrangement: &Arrangement,
     piece: &Piece,
-    outlines: &[Outline<'_>],
+    outlines: &[Outline],
 ) -> Result<[Vec<bool>; 2], FigureError> {
     let mut held = [vec![false; outlines.len()], vec![false; outlines.len()]];
     for (figure, outline) in outlines.iter().enumerate() {

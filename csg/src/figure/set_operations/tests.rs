@@ -117,6 +117,21 @@ fn offsets_round_miter_and_chamfer_corners() {
 }
 
 #[test]
+fn a_hole_stays_however_small() {
+    let ring = Figure::combined(FigureOperation::Difference, &[&disc(10), &disc(5)]).unwrap();
+    for zeros in [3, 6, 9] {
+        let gap = Rational::ONE / Rational::from(10u64.pow(zeros));
+        let grown = ring.offset(&(n(5) - &gap), OffsetJoin::Round).unwrap();
+        assert_eq!(grown.contours().count(), 2, "1e-{zeros}");
+    }
+    let filled = ring.offset(&n(5), OffsetJoin::Round).unwrap();
+    assert_eq!(filled.contours().count(), 1);
+    let least = Rational::ONE / Rational::from(10u64.pow(9));
+    let grown = square(10).offset(&least, OffsetJoin::Round).unwrap();
+    assert_eq!(grown.edges().len(), 8);
+}
+
+#[test]
 fn an_offset_polygon_has_one_edge_for_each() {
     let corner = |k: u32| direction(&(n(72) * Rational::from(k)));
     let pentagon = Figure::polygon(&[(0..5).map(corner).collect()]).unwrap();

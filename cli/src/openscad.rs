@@ -56,9 +56,10 @@ pub fn flattened(
         .filter(|line| !line.trim().is_empty())
         .collect();
     if !output.status.success() || !target.exists() {
-        let last = said.last().copied().unwrap_or("no message");
+        let error = said.iter().find(|line| line.starts_with("ERROR"));
+        let why = error.or(said.last()).copied().unwrap_or("no message");
         return Err(refused(format!(
-            "`{PROGRAM}` failed ({}): {last}",
+            "`{PROGRAM}` failed ({}): {why}",
             output.status
         )));
     }

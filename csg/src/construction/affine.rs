@@ -8,7 +8,7 @@ use premio_kernel::number::rational::{Rational, exact_sqrt};
 use super::ConstructionError;
 use super::leaves::{own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
-use crate::polyhedron::SpacePoint;
+use crate::polyhedron::{SpacePoint, dot};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::{PlacedPrimitive, TreeNode};
@@ -38,15 +38,14 @@ impl AffineMap {
     /// This map after a motion.
     fn after(&self, motion: &Motion) -> Self {
         let turn = motion.rotation_matrix();
-        let row = |i: usize, v: [&Rational; 3]| {
-            (0..3).fold(Rational::ZERO, |sum, k| sum + &self.matrix[i][k] * v[k])
-        };
-        let column = |j: usize| [&turn[0][j], &turn[1][j], &turn[2][j]];
-        let shift = motion.offset();
-        let origin = [&shift[0], &shift[1], &shift[2]];
+        let column = |j: usize| [0, 1, 2].map(|i| turn[i][j].clone());
+        let columns = [0, 1, 2].map(column);
         Self {
-            matrix: std::array::from_fn(|i| std::array::from_fn(|j| row(i, column(j)))),
-            offset: std::array::from_fn(|i| row(i, origin) + &self.offset[i]),
+            matrix: self
+                .matrix
+                .each_ref()
+                .map(|row| columns.each_ref().map(|c| dot(row, c))),
+            offset: [0, 1, 2].map(|i| dot(&self.matrix[i], motion.offset()) + &self.offset[i]),
         }
     }
 }
@@ -113,14 +112,11 @@ struct Stretch {
 impl Stretch {
     fn new(map: &AffineMap) -> Option<Self> {
         let column = |j: usize| [0, 1, 2].map(|i| map.matrix[i][j].clone());
-        let product = |a: &SpacePoint, b: &SpacePoint| {
-            (0..3).fold(Rational::ZERO, |sum, k| sum + &a[k] * &b[k])
-        };
         let [x, y, z] = [0, 1, 2].map(column);
-        let [xx, yy, zz] = [&x, &y, &z].map(|u| product(u, u));
+        let [xx, yy, zz] = [&x, &y, &z].map(|u| dot(u, u));
         let is_right = [(&x, &y), (&y, &z), (&z, &x)]
             .into_iter()
-            .all(|(u, v)| product(u, v).is_zero());
+            .all(|(u, v)| dot(u, v).is_zero());
         if !is_right || [&xx, &yy, &zz].iter().any(|square| square.is_zero()) {
             return None;
         }

@@ -6,15 +6,19 @@ use premio_kernel::number::double_double::F106;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::rational::{Rational, exact_sqrt};
 
-use crate::polyhedron::SpacePoint;
+use crate::polyhedron::{SpacePoint, dot};
+
+/// The square root of a number that is not negative: exact, or rounded to 106 bits.
+pub(super) fn root(square: &Rational) -> Rational {
+    exact_sqrt(square).unwrap_or_else(|| {
+        let root = F106::nearest(square).sqrt();
+        root.exact().unwrap_or_default()
+    })
+}
 
 /// The length of a vector: exact, or rounded to 106 bits.
 pub(super) fn length(u: &SpacePoint) -> Rational {
-    let square = &u[0] * &u[0] + &u[1] * &u[1] + &u[2] * &u[2];
-    exact_sqrt(&square).unwrap_or_else(|| {
-        let root = F106::nearest(&square).sqrt();
-        root.exact().unwrap_or_default()
-    })
+    root(&dot(u, u))
 }
 
 /// The motion that takes the origin to a point and the z axis to a direction.

@@ -11,7 +11,7 @@ use super::rounding::rounded_hull;
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{Disc, Figure, FigurePoint};
-use crate::polyhedron::{Polyhedron, SpacePoint};
+use crate::polyhedron::{Polyhedron, SpacePoint, cross};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::PlacedPrimitive;
@@ -91,12 +91,8 @@ fn are_in_line(points: &[SpacePoint]) -> bool {
     else {
         return true;
     };
-    points.iter().map(from).all(|v| {
-        (0..3).all(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            &u[j] * &v[k] == &u[k] * &v[j]
-        })
-    })
+    let mut others = points.iter().map(from);
+    others.all(|v| cross(&u, &v).iter().all(Rational::is_zero))
 }
 
 /// The frames whose z axis the hull may be upright in, or round about: those of the round

@@ -1,11 +1,10 @@
 //! Sections of solids with the plane z = 0, and their shadows on it.
 
 use premio_kernel::motion::Motion;
-use premio_kernel::number::double_double::F106;
-use premio_kernel::number::float::Float;
-use premio_kernel::number::rational::{Rational, exact_sqrt};
+use premio_kernel::number::rational::Rational;
 
 use super::ConstructionError;
+use super::frames::root;
 use super::leaves::{column, corners, own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{
@@ -72,11 +71,6 @@ fn combined(op: Operation, operands: Vec<Option<FigureExpression>>) -> Option<Fi
     };
     let operands: Vec<FigureExpression> = operands.into_iter().flatten().collect();
     (!is_empty && !operands.is_empty()).then_some(FigureExpression::Combined(op, operands))
-}
-
-/// The square root of a number that is not negative, exact or rounded to 106 bits.
-fn root(square: &Rational) -> Rational {
-    exact_sqrt(square).unwrap_or_else(|| F106::nearest(square).sqrt().exact().unwrap_or_default())
 }
 
 fn disc_at([x, y, _]: &SpacePoint, radius: &Rational) -> Result<Figure, ConstructionError> {

@@ -12,7 +12,7 @@ use crate::builder::{Builder, SolidId};
 use crate::figure::{
     ArcTurn, ContourCorner, Disc, Figure, FigureArc, FigureEdge, FigurePoint, OffsetJoin,
 };
-use crate::polyhedron::{Polyhedron, PolyhedronError, SpacePoint};
+use crate::polyhedron::{Polyhedron, PolyhedronError, SpacePoint, cross, dot};
 use crate::primitive::{Primitive, RevolutionAngle};
 use crate::transform::Transform;
 use crate::tree::{Operation, PlacedPrimitive};
@@ -110,14 +110,8 @@ fn rounded_polygon(
     let prism = Polyhedron::convex_hull(&raised.collect::<Vec<_>>())?;
     let is_base = |face: &usize| {
         let own = prism.normal(*face);
-        let along: Rational = (0..3)
-            .map(|i| &own[i] * &normal[i])
-            .fold(Rational::ZERO, |s, x| s + x);
-        let across = (0..3).any(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            &own[j] * &normal[k] != &own[k] * &normal[j]
-        });
-        !across && along < Rational::ZERO
+        let is_parallel = cross(&own, &normal).iter().all(Rational::is_zero);
+        is_parallel && dot(&own, &normal) < Rational::ZERO
     };
     let base = (0..prism.faces().len()).find(is_base);
     let base = base.ok_or(ConstructionError::NoHull)?;
@@ -138,13 +132,8 @@ fn normal_of(points: &[SpacePoint]) -> Option<SpacePoint> {
     let from = |p: &SpacePoint| -> SpacePoint { std::array::from_fn(|i| &p[i] - &points[0][i]) };
     let is_zero = |u: &SpacePoint| u.iter().all(Rational::is_zero);
     let u = points.iter().map(from).find(|u| !is_zero(u))?;
-    let cross = |v: SpacePoint| -> SpacePoint {
-        std::array::from_fn(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            &u[j] * &v[k] - &u[k] * &v[j]
-        })
-    };
-    points.iter().map(from).map(cross).find(|n| !is_zero(n))
+    let mut normals = points.iter().map(|p| cross(&u, &from(p)));
+    normals.find(|n| !is_zero(n))
 }
 
 /// The sum of a placed primitive and a ball about the origin.

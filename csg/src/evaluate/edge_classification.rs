@@ -12,6 +12,7 @@
 use super::arrangement::Arrangement;
 use super::distinct_surfaces::CarrierSide;
 use super::edge_candidates::EdgeCandidate;
+use super::edge_joining::{ClassifiedEdge, JoinedEdge, join};
 use super::error::EvaluationError;
 use super::halfspaces::{EndRule, HalfSpaceModel};
 use super::membership::Membership;
@@ -24,12 +25,10 @@ use premio_kernel::brep::boundary_input::{
     BoundaryInput, EdgeInput, FaceUse, SurfaceSide, VertexInput,
 };
 use premio_kernel::brep::topology::Sense;
-use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use std::collections::HashMap;
 
 /// A primitive close to a piece, with the conditions under which it contains a sector.
 struct Near<N: Float = f64> {
@@ -110,13 +109,6 @@ struct OpenSide {
     side: Sense,
 }
 
-/// A candidate that is an edge, with the faces around it.
-#[derive(Clone)]
-struct ClassifiedEdge<N: Float = f64> {
-    piece: EdgeCandidate<N>,
-    face_uses: Vec<FaceUse>,
-}
-
 /// The neighbourhood of a point of a piece.
 struct NeighbourhoodSample<N: Float = f64> {
     /// The primitives that contain it, by leaf.
@@ -186,7 +178,7 @@ pub(super) fn boundary<N: Float>(
     }
     let joined = join(edges, arrangement);
     let whole = classifier.whole_surfaces(&joined)?;
-    let raw = |e: Joined<N>| EdgeInput {
+    let raw = |e: JoinedEdge<N>| EdgeInput {
         curve: e.piece.meeting,
         range: e.piece.range,
         ends: e.piece.ends,
@@ -249,7 +241,7 @@ impl<N: Float> Classifier<'_, N> {
             point: curve.point(t),
             tangent: curve.tangent(t),
         };
-        self.wings_at(&spot, &look.near)
+        self.face_uses_at(&spot, &look.near)
     }
 
     /// The primitives close to `p`, up to the sides of the piece's own carriers.
@@ -327,7 +319,7 @@ impl<N: Float> Classifier<'_, N> {
         }
     }
 
-    fn wings_at(
+    fn face_uses_at(
         &self,
         spot: &Spot<'_, N>,
         near: &[Near<N>],
@@ -420,7 +412,7 @@ impl<N: Float> Classifier<'_, N> {
     }
 
     /// The closed carriers without any edge that are faces as a whole.
-    fn whole_surfaces(&self, edges: &[Joined<N>]) -> Result<Vec<SurfaceSide>, EvaluationError> {
+    fn whole_surfaces(&self, edges: &[JoinedEdge<N>]) -> Result<Vec<SurfaceSide>, EvaluationError> {
         let mut bounded = vec![false; self.arrangement.carriers.len()];
         for face_use in edges.iter().flat_map(|e| &e.face_uses) {
             bounded[face_use.surface] = true;
@@ -496,135 +488,4 @@ struct MaterialChange {
     sheet: usize,
     /// Whether there is material beyond it.
     after: bool,
-}
-
-/// An edge made of consecutive pieces of one curve.
-struct Joined<N: Float = f64> {
-    /// The entire edge as one piece.
-    piece: EdgeCandidate<N>,
-    /// The faces around it.
-    face_uses: Vec<FaceUse>,
-    /// The corners in its interior.
-    passes: Vec<usize>,
-}
-
-/// Joins the pieces of one curve at corners where nothing else ends and the faces do not change.
-fn join<N: Float>(edges: Vec<ClassifiedEdge<N>>, arrangement: &Arrangement<N>) -> Vec<Joined<N>> {
-    let next = successors(&edges, arrangement);
-    let mut has_previous = vec![false; edges.len()];
-    for &j in next.iter().flatten() {
-        has_previous[j] = true;
-    }
-    let mut done = vec![false; edges.len()];
-    let starts = (0..edges.len())
-        .filter(|&i| !has_previous[i])
-        .chain(0..edges.len());
-    let mut joined = Vec::new();
-    for start in starts {
-        if !done[start] {
-            joined.push(run_from(start, &edges, &next, arrangement, &mut done));
-        }
-    }
-    joined
-}
-
-/// By piece: the next one along the curve, if the corner in between is no vertex.
-fn successors<N: Float>(
-    edges: &[ClassifiedEdge<N>],
-    arrangement: &Arrangement<N>,
-) -> Vec<Option<usize>> {
-    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (i, edge) in edges.iter().enumerate() {
-        for v in edge.piece.ends.iter().flatten() {
-            at.entry(*v).or_default().push(i);
-        }
-    }
-    let next = edges.iter().enumerate().map(|(i, edge)| {
-        let [_, end] = edge.piece.ends?;
-        let [a, b] = at[&end][..] else { return None };
-        let j = if a == i { b } else { a };
-        let curve = &arrangement.meetings[edge.piece.meeting].curve;
-        edge.is_followed_by(&edges[j], curve).then_some(j)
-    });
-    next.collect()
-}
-
-impl<N: Float> ClassifiedEdge<N> {
-    /// Whether another piece of the same curve starts at the end of this one, with the same faces.
-    fn is_followed_by(&self, other: &Self, curve: &Curve<N>) -> bool {
-        let [from, to] = [&self.piece, &other.piece];
-        let (Some([_, end]), Some([start, _])) = (from.ends, to.ends) else {
-            return false;
-        };
-        to.meeting == from.meeting
-            && start == end
-            && meets_at(curve.cycle(), from.range[1], to.range[0])
-            && !curve.turns_back(from.range[1])
-            && same_wings(&self.face_uses, &other.face_uses)
-    }
-}
-
-/// The edge that starts with a piece; its pieces are marked as done.
-fn run_from<N: Float>(
-    start: usize,
-    edges: &[ClassifiedEdge<N>],
-    next: &[Option<usize>],
-    arrangement: &Arrangement<N>,
-    done: &mut [bool],
-) -> Joined<N> {
-    done[start] = true;
-    let ClassifiedEdge {
-        mut piece,
-        face_uses,
-    } = edges[start].clone();
-    let curve = &arrangement.meetings[piece.meeting].curve;
-    let mut passes = Vec::new();
-    let mut last = start;
-    while let Some(j) = next[last] {
-        passes.extend(edges[last].piece.ends.map(|e| e[1]));
-        if j == start {
-            piece.ends = None;
-            break;
-        }
-        done[j] = true;
-        piece.range[1] = run_on(curve.cycle(), piece.range[1], edges[j].piece.range);
-        if let (Some(ends), Some(e)) = (piece.ends.as_mut(), edges[j].piece.ends) {
-            ends[1] = e[1];
-        }
-        last = j;
-    }
-    if piece.ends.is_none()
-        && let Some(cycle) = curve.cycle()
-    {
-        piece.range[1] = piece.range[0] + cycle;
-    }
-    Joined {
-        piece,
-        face_uses,
-        passes,
-    }
-}
-
-/// The end of a piece that starts where the previous one ends, counted on over the periods. A sum
-/// of lengths would leave a gap in a closed curve, by rounding.
-fn run_on<N: Float>(cycle: Option<N>, before: N, [from, to]: [N; 2]) -> N {
-    cycle.map_or(to, |p| to + p * ((before - from) / p).round())
-}
-
-/// Whether two parameters denote the same point of a curve.
-fn meets_at<N: Float>(cycle: Option<N>, a: N, b: N) -> bool {
-    let scale = N::ONE / N::whole(1 << 24);
-    let away = match cycle {
-        Some(p) => {
-            let d = (a - b).rem_euclid(p);
-            d.min(p - d)
-        }
-        None => (a - b).abs(),
-    };
-    away.is_at_most(scale * (N::ONE + a.abs()))
-}
-
-/// Whether two pieces have the same faces around them, up to a cyclic shift.
-fn same_wings(a: &[FaceUse], b: &[FaceUse]) -> bool {
-    a.len() == b.len() && (0..a.len()).any(|k| (0..a.len()).all(|i| a[i] == b[(i + k) % b.len()]))
 }

@@ -1,6 +1,6 @@
 //! The facets of a polyhedron: which of them pass through a point, and where they end.
 
-use super::section::{IncidentWall, SectionLook};
+use super::region::{IncidentWall, RegionLook};
 use crate::polyhedron::{Polyhedron, PolyhedronFace};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::vector::{Length, rounded};
@@ -182,16 +182,16 @@ impl<N: Float> Facets<N> {
         }
     }
 
-    /// The facets through a point among those that `is_chosen` selects by their sides, within a
-    /// tolerance, and the distance of the others.
+    /// The facets through a point, and the distance of others up to a margin; see
+    /// [`super::region::WalledRegion::look`].
     pub fn look(
         &self,
         p: &Point3<N>,
         is_chosen: impl Fn(usize) -> bool,
         tolerance: N,
         margin: N,
-    ) -> SectionLook<N> {
-        let mut look = SectionLook {
+    ) -> RegionLook<N> {
+        let mut look = RegionLook {
             walls: Vec::new(),
             is_inside: false,
             margin: N::INFINITY,

@@ -21,6 +21,7 @@
 //! | `membership` | whether a choice of sides is material, by the tree |
 //! | `radial_order` | the order of carriers around a piece |
 //! | `edge_classification` | which pieces are edges, and where their faces lie |
+//! | `edge_joining` | consecutive pieces of a curve as one edge |
 //! | `exact_coefficients` | in exact evaluation, surfaces with rational coefficients |
 //! | `incidence_proof` | in exact evaluation, proofs of what passes through what |
 //! | `close_calls` | the close calls of which it is not yet known whether they matter |
@@ -36,6 +37,7 @@ mod close_calls;
 mod distinct_surfaces;
 mod edge_candidates;
 mod edge_classification;
+mod edge_joining;
 mod error;
 mod evaluation;
 mod exact_coefficients;

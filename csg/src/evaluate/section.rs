@@ -4,6 +4,7 @@
 //! A carrier of a wall extends beyond the wall. The section determines which walls pass through a
 //! point, whether they end there, and elsewhere whether the point is inside.
 
+use super::region::{IncidentWall, RegionLook};
 use super::walls::Wall;
 use crate::figure::{ArcTurn, Figure, FigureEdge};
 use nalgebra::{Matrix3, Point3, Vector3};
@@ -77,31 +78,6 @@ struct Slabs {
     /// The indices of the edges in each slab.
     edges: Vec<Vec<usize>>,
 }
-
-/// A wall through a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct IncidentWall<N: Float> {
-    /// The index among the primitive's sides.
-    pub side: usize,
-    /// Whether the material is on the positive side of the surface.
-    pub is_concave: bool,
-    /// The direction in which the wall extends from the point; `None` if it does on both sides.
-    pub away: Option<Vector3<N>>,
-}
-
-/// The neighbourhood of a point in a section.
-#[derive(Debug)]
-pub(super) struct SectionLook<N: Float> {
-    /// The chosen walls through the point.
-    pub walls: Vec<IncidentWall<N>>,
-    /// Whether the point is inside, if there are none.
-    pub is_inside: bool,
-    /// The distance of the closest other wall, if it is close.
-    pub margin: N,
-}
-
-/// The distance up to which the distance of a wall is determined, relative to the tolerance.
-pub(super) const MARGIN: f64 = 8.0;
 
 /// The most entries of slabs, relative to the number of edges.
 const MOST_PER_EDGE: usize = 8;
@@ -395,15 +371,16 @@ impl<N: Float> Section<N> {
         crossed % 2 == 1
     }
 
-    /// The walls through a point among those that `is_chosen` selects by their sides, within a
-    /// tolerance, and the distance of the others.
+    /// The walls through a point, and the distance of others up to a margin; see
+    /// [`super::region::WalledRegion::look`].
     pub fn look(
         &self,
         p: &Point3<N>,
         is_chosen: impl Fn(usize) -> bool,
         tolerance: N,
-    ) -> SectionLook<N> {
-        let mut look = SectionLook {
+        margin: N,
+    ) -> RegionLook<N> {
+        let mut look = RegionLook {
             walls: Vec::new(),
             is_inside: false,
             margin: N::INFINITY,
@@ -411,7 +388,6 @@ impl<N: Float> Section<N> {
         let Some(image) = self.image(p) else {
             return look;
         };
-        let margin = N::from_f64(MARGIN) * tolerance;
         for edge in self.near(&image, margin) {
             let edge = &self.edges[edge];
             let Some(side) = edge.side else { continue };
@@ -489,7 +465,14 @@ mod tests {
             panic!("a figure");
         };
         let tolerance = f64::EPSILON * 64.0;
-        let look = |x: f64, y: f64| section.look(&Point3::new(x, y, 0.5), |_| true, tolerance);
+        let look = |x: f64, y: f64| {
+            section.look(
+                &Point3::new(x, y, 0.5),
+                |_| true,
+                tolerance,
+                8.0 * tolerance,
+            )
+        };
         // In the middle of an edge, at two corners, and away from all edges.
         let edge = look(1.0, 0.0);
         assert_eq!(edge.walls.len(), 1);

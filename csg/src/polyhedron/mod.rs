@@ -7,7 +7,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use premio_kernel::number::rational::{Rational, to_f64};
 
-use orientation::{FilteredPoint, cross, difference, dot, orientation, plane_normal};
+use orientation::{FilteredPoint, difference, orientation, plane_normal};
+pub(crate) use orientation::{cross, dot};
 
 /// The largest number of corners of all faces.
 pub const MAX_CORNERS: usize = 1_000_000;

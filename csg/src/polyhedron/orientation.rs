@@ -51,11 +51,11 @@ pub(super) fn difference(a: &FilteredPoint, b: &FilteredPoint) -> SpacePoint {
     std::array::from_fn(|i| &a.exact[i] - &b.exact[i])
 }
 
-pub(super) fn dot(a: &SpacePoint, b: &SpacePoint) -> Rational {
+pub(crate) fn dot(a: &SpacePoint, b: &SpacePoint) -> Rational {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-pub(super) fn cross(a: &SpacePoint, b: &SpacePoint) -> SpacePoint {
+pub(crate) fn cross(a: &SpacePoint, b: &SpacePoint) -> SpacePoint {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         &a[j] * &b[k] - &a[k] * &b[j]

@@ -1,6 +1,6 @@
 //! The facets of a polyhedron: which of them pass through a point, and where they end.
 
-use super::region::{IncidentWall, RegionLook};
+use super::incident_walls::{IncidentWall, RegionLook};
 use crate::polyhedron::{Polyhedron, PolyhedronFace};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::vector::{Length, rounded};

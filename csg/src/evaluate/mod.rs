@@ -45,6 +45,7 @@ mod face_verification;
 mod facets;
 mod halfspaces;
 mod incidence_proof;
+mod incident_walls;
 mod membership;
 mod near_cylinders;
 mod radial_order;

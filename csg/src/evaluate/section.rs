@@ -4,7 +4,7 @@
 //! A carrier of a wall extends beyond the wall. The section determines which walls pass through a
 //! point, whether they end there, and elsewhere whether the point is inside.
 
-use super::region::{IncidentWall, RegionLook};
+use super::incident_walls::{IncidentWall, RegionLook};
 use super::walls::Wall;
 use crate::figure::{ArcTurn, Figure, FigureEdge};
 use nalgebra::{Matrix3, Point3, Vector3};

@@ -8,8 +8,6 @@ use super::number::quotient;
 use super::turns::{AxisTurn, about_axes};
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::{Builder, BuilderNode};
-use crate::figure::{Figure, FigureEdge};
-use crate::polyhedron::{PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -119,24 +117,6 @@ impl Language for Padl {
     }
 }
 
-/// A figure: for each contour, the numbers of its corners.
-fn figure(figure: &Figure) -> String {
-    let corner = |edge: &FigureEdge| {
-        let mut numbers: Vec<String> = edge.start.iter().map(quotient).collect();
-        if let Some(arc) = &edge.arc {
-            numbers.extend(arc.centre.iter().map(quotient));
-            numbers.push(quotient(&arc.signed_radius()));
-        }
-        format!("[{}]", numbers.join(", "))
-    };
-    let contour = |edges: &[FigureEdge]| {
-        let corners: Vec<String> = edges.iter().map(corner).collect();
-        format!("[{}]", corners.join(", "))
-    };
-    let contours: Vec<String> = figure.contours().map(contour).collect();
-    format!("PGN({})", contours.join(", "))
-}
-
 fn call(primitive: &Primitive) -> String {
     let with = |name: &str, arguments: &[(&str, &Rational)]| {
         let all = arguments.iter();
@@ -157,42 +137,9 @@ fn call(primitive: &Primitive) -> String {
         }
         Primitive::Sphere { radius } => with("SPH", &[("R", radius)]),
         Primitive::Torus { major, minor } => with("TOR", &[("RMAJ", major), ("RMIN", minor)]),
-        Primitive::Prism {
-            figure: of,
-            height,
-            top,
-        } => {
-            let top = match top.is_one() {
-                true => String::new(),
-                false => format!(", TOP={}", quotient(top)),
-            };
-            format!("PRI({}, H={}{top})", figure(of), quotient(height))
-        }
-        Primitive::Revolution { figure: of, angle } => {
-            let angle = angle.as_ref().map_or(String::new(), |angle| {
-                format!(", ANGLE={}", quotient(angle.degrees()))
-            });
-            format!("REV({}{angle})", figure(of))
-        }
-        Primitive::Polyhedron { polyhedron } => {
-            let point = |p: &SpacePoint| {
-                let [x, y, z] = p.each_ref().map(quotient);
-                format!("[{x}, {y}, {z}]")
-            };
-            let corners = |corners: &Vec<usize>| {
-                let corners: Vec<String> = corners.iter().map(usize::to_string).collect();
-                format!("[{}]", corners.join(", "))
-            };
-            let face = |face: &PolyhedronFace| {
-                let loops: Vec<String> = face.loops.iter().map(corners).collect();
-                match &loops[..] {
-                    [outline] => outline.clone(),
-                    _ => format!("[{}]", loops.join(", ")),
-                }
-            };
-            let points: Vec<String> = polyhedron.points().iter().map(point).collect();
-            let faces: Vec<String> = polyhedron.faces().iter().map(face).collect();
-            format!("POLY([{}], [{}])", points.join(", "), faces.join(", "))
+        // A description with one of these is refused before.
+        Primitive::Prism { .. } | Primitive::Revolution { .. } | Primitive::Polyhedron { .. } => {
+            String::new()
         }
     }
 }

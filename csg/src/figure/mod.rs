@@ -413,6 +413,12 @@ impl Figure {
         })
     }
 
+    /// Its extent along the first axis, rounded.
+    pub(crate) fn width(&self) -> Rational {
+        let [lo, hi] = self.bounds();
+        from_f64(hi[0] - lo[0]).unwrap_or_default()
+    }
+
     /// Its numbers: the coordinates of all ends and centres, and all radii.
     pub(crate) fn lengths(&self) -> impl Iterator<Item = &Rational> {
         self.edges.iter().flat_map(|edge| {

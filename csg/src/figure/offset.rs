@@ -8,7 +8,7 @@ use super::roots::{root, shortened};
 use super::set_operations::FigureExpression;
 use super::{
     ArcTurn, ContourCorner, Figure, FigureArc, FigureEdge, FigureError, FigureOperation,
-    FigurePoint,
+    FigurePoint, direction,
 };
 use premio_kernel::number::rational::{Rational, to_f64};
 
@@ -17,6 +17,8 @@ use premio_kernel::number::rational::{Rational, to_f64};
 pub enum OffsetJoin {
     /// By an arc about the corner.
     Round,
+    /// By chords of this arc, of which so many make a whole circle.
+    Faceted(u32),
     /// By prolonging the edges.
     Miter,
     /// By a segment at the distance from the corner.
@@ -157,6 +159,7 @@ fn corner_piece(
                 corner(to, None),
             ]
         }
+        OffsetJoin::Faceted(count) => chords(at, &ends, [&m, &n], size, count),
         OffsetJoin::Miter if !is_back => {
             let by = tangent_of_half(&sin, &cos);
             let tip = ahead(&from, &m, &(by * size));
@@ -174,6 +177,31 @@ fn corner_piece(
         }
     };
     region(outline)
+}
+
+/// The corners of the chords about a corner: equal steps from the first end, and the last end, as
+/// OpenSCAD makes them.
+fn chords(
+    at: &FigurePoint,
+    ends: &[FigurePoint; 2],
+    [m, n]: [&FigurePoint; 2],
+    size: &Rational,
+    count: u32,
+) -> Vec<ContourCorner> {
+    let [sin, cos] = [&m[0] * &n[1] - &m[1] * &n[0], &m[0] * &n[0] + &m[1] * &n[1]];
+    let turned = to_f64(&sin)
+        .atan2(to_f64(&cos))
+        .to_degrees()
+        .rem_euclid(360.0);
+    let steps = (turned * f64::from(count) / 360.0).round().max(1.0) as u32;
+    let mut points = vec![at.clone(), ends[0].clone()];
+    for k in 1..steps {
+        let [c, s] = direction(&(Rational::from(360 * k) / Rational::from(count)));
+        let away = [&m[0] * &c - &m[1] * &s, &m[0] * &s + &m[1] * &c];
+        points.push([0, 1].map(|i| shortened(&(&at[i] + &away[i] * size))));
+    }
+    points.push(ends[1].clone());
+    points.into_iter().map(|p| corner(p, None)).collect()
 }
 
 /// A point moved across a normal, in the direction of its edge.

@@ -29,6 +29,11 @@ impl FacetRule {
         }
     }
 
+    /// Whether circles without `$fn` are polygons, by their size.
+    pub fn is_by_size(&self) -> bool {
+        self.limit == FacetLimit::All
+    }
+
     /// The number of sides of the polygon that stands for a circle of this radius; `None` if it is
     /// a circle.
     pub fn sides(

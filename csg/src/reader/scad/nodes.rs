@@ -166,9 +166,10 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 Ok(solid(part.transpose()?))
             }
             "rotate_extrude" => {
-                let spin = Spin::new(arguments, &mut self.rule)?;
+                let spin = Spin::new(arguments)?;
                 let region = self.region(children, name)?;
-                let part = region.map(|r| spin.solid(&mut self.builder, &r, &arguments.span));
+                let rule = &mut self.rule;
+                let part = region.map(|r| spin.solid(&mut self.builder, &r, arguments, rule));
                 Ok(solid(part.transpose()?))
             }
             "cube" => shapes::cube(arguments).map(|shape| self.placed(shape)),
@@ -318,7 +319,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
     ) -> Result<Geometry, SpannedError> {
         arguments.bind(&["r", "delta", "chamfer"])?;
         let (distance, join) = match (arguments.find("r"), arguments.find("delta")) {
-            (Some(r), _) => (r.number()?.clone(), OffsetJoin::Round),
+            (Some(r), _) => self.rounded(r.number()?.clone(), arguments)?,
             (None, Some(delta)) => {
                 let join = match arguments.flag("chamfer")? {
                     true => OffsetJoin::Chamfer,
@@ -326,7 +327,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 };
                 (delta.number()?.clone(), join)
             }
-            (None, None) => (arguments.require("r")?.number()?.clone(), OffsetJoin::Round),
+            (None, None) => self.rounded(arguments.require("r")?.number()?.clone(), arguments)?,
         };
         let span = arguments.span.clone();
         let figure = region.map(|r| r.evaluated(&span)).transpose()?.flatten();
@@ -335,6 +336,23 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         };
         let grown = made(figure.offset(&distance, join), &span)?;
         Ok(plane(grown.map(|figure| Region::new(figure, span))))
+    }
+
+    /// The distance of an `offset` by `r`, and how its corners are filled.
+    fn rounded(
+        &mut self,
+        distance: Rational,
+        arguments: &Arguments,
+    ) -> Result<(Rational, OffsetJoin), SpannedError> {
+        let radius = match distance < Rational::ZERO {
+            true => -&distance,
+            false => distance.clone(),
+        };
+        let sides = self.rule.sides(arguments, &radius)?;
+        Ok((
+            distance,
+            sides.map_or(OffsetJoin::Round, OffsetJoin::Faceted),
+        ))
     }
 
     fn projection(

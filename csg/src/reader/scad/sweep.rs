@@ -1,6 +1,5 @@
 //! `linear_extrude` and `rotate_extrude`.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use premio_kernel::number::rational::Rational;
@@ -272,15 +271,12 @@ pub(super) struct Spin {
     start: Transform,
     /// Whether the start is written.
     is_started: bool,
-    /// The number of flat sides of a whole turn, if it is meant as a polygon.
-    sides: Option<u32>,
 }
 
 impl Spin {
     /// Reads the arguments of `rotate_extrude`.
-    pub fn new(arguments: &mut Arguments, rule: &mut FacetRule) -> Result<Self, SpannedError> {
+    pub fn new(arguments: &mut Arguments) -> Result<Self, SpannedError> {
         arguments.bind(&["angle", "start"])?;
-        let sides = rule.sides(arguments, &Rational::ONE)?;
         let turn = Rational::from(360);
         let degrees = match arguments.find("angle") {
             Some(angle) => angle.number()?.clone(),
@@ -320,7 +316,6 @@ impl Spin {
             angle,
             start: moves,
             is_started: arguments.find("start").is_some(),
-            sides,
         })
     }
 
@@ -329,9 +324,18 @@ impl Spin {
         &self,
         builder: &mut Builder,
         region: &Region,
-        span: &Range<usize>,
+        arguments: &Arguments,
+        rule: &mut FacetRule,
     ) -> Result<SolidId, SpannedError> {
-        let part = match self.sides {
+        let span = &arguments.span;
+        // OpenSCAD counts segments by the width of the figure.
+        let width = match rule.is_by_size() {
+            true => region
+                .evaluated(span)?
+                .map_or(Rational::ONE, |figure| figure.width()),
+            false => Rational::ONE,
+        };
+        let part = match rule.sides(arguments, &width)? {
             Some(sides) => {
                 let Some(figure) = region.evaluated(span)? else {
                     return Ok(SolidId::EMPTY);

@@ -150,6 +150,21 @@ fn small_numbers_of_sides_are_polygons() {
     };
     // 2 pi 2 / 2 is above 6.
     assert_eq!(figure.edges().len(), 7);
+    // An offset by an arc of a quarter turn takes two chords, and one of a width of 60 thirty sides.
+    let square = "offset(r = 1, $fn = 8) { square([4, 4]); }";
+    let plate = csg(&format!("linear_extrude(height = 1) {{ {square} }}"));
+    let (_, leaf) = plate.leaves().next().unwrap();
+    let Primitive::Prism { figure, .. } = &leaf.primitive else {
+        panic!("a prism");
+    };
+    assert_eq!(figure.edges().len(), 12);
+    let wide = b"rotate_extrude($fn = 0, $fa = 12, $fs = 2) { square([60, 1]); }";
+    let wide = read("part", wide, Format::Csg, &options).unwrap().tree;
+    let (_, leaf) = wide.leaves().next().unwrap();
+    let Primitive::Polyhedron { polyhedron } = &leaf.primitive else {
+        panic!("a polyhedron");
+    };
+    assert_eq!(polyhedron.faces().len(), 90);
     let ring = "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(r = 1); }";
     let polygonal = format!("rotate_extrude($fn = 8) {{ {ring} }}");
     assert!(read_text(&polygonal, Format::Csg).is_err());

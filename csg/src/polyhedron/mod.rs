@@ -1,6 +1,7 @@
 //! Polyhedra: solids that plane polygons bound, with rational corners.
 
 mod convex_hull;
+mod coplanar;
 mod orientation;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -125,7 +126,7 @@ pub struct PolyhedronRepair {
 impl Polyhedron {
     /// The polyhedron with these faces.
     ///
-    /// Points may coincide. Faces without holes that are not plane are cut into triangles about
+    /// Points may coincide. Neighbouring faces of one plane become one. Faces without holes that are not plane are cut into triangles about
     /// their first corner. If the faces enclose a negative volume, all of them are turned.
     ///
     /// # Errors
@@ -169,6 +170,7 @@ impl Polyhedron {
         }
         let kept = without_flat(kept, &all);
         check_closed(&kept)?;
+        let kept = coplanar::united(kept, &all);
         let mut polyhedron = Self::compact(points, kept);
         let volume = polyhedron.sixfold_volume();
         if volume.is_zero() {

@@ -1,6 +1,6 @@
 //! Predicates of points in space: exact, filtered in f64.
 
-use super::SpacePoint;
+use super::{PolyhedronFace, SpacePoint, normal_of};
 use premio_kernel::number::rational::{Rational, to_f64};
 use std::cmp::Ordering;
 
@@ -45,6 +45,16 @@ pub(super) fn orientation([a, b, c, d]: [&FilteredPoint; 4]) -> Ordering {
     }
     let [u, v, w] = [b, c, d].map(|p| difference(p, a));
     dot(&cross(&u, &v), &w).cmp(&Rational::ZERO)
+}
+
+/// Whether two faces of one plane look the same way.
+pub(super) fn is_same_side(
+    a: &PolyhedronFace,
+    b: &PolyhedronFace,
+    points: &[FilteredPoint],
+) -> bool {
+    let [a, b] = [a, b].map(|face| normal_of(face, |i| &points[i].exact));
+    dot(&a, &b) > Rational::ZERO
 }
 
 pub(super) fn difference(a: &FilteredPoint, b: &FilteredPoint) -> SpacePoint {

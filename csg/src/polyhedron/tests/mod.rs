@@ -133,3 +133,28 @@ proptest! {
         prop_assert_eq!(again.sixfold_volume(), hull.sixfold_volume());
     }
 }
+
+#[test]
+fn faces_of_one_plane_are_one_face() {
+    // A cube of triangles, whose sides are halved by a square of points between its base and lid.
+    let mut all = cube();
+    all.extend(points(&[[0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1]]));
+    let base = [[0, 1, 3], [0, 3, 2]].map(|[a, b, c]| face([c, b, a]));
+    let lid = [[4, 5, 7], [4, 7, 6]].map(face);
+    let rings = [[0, 1, 3, 2], [8, 9, 10, 11], [4, 5, 7, 6]];
+    let mut faces = [base, lid].concat();
+    for ring in rings.windows(2) {
+        for k in 0..4 {
+            let [i, j] = [k, (k + 1) % 4];
+            let corners = [ring[0][i], ring[0][j], ring[1][j], ring[1][i]];
+            faces.push(face([corners[0], corners[1], corners[2]]));
+            faces.push(face([corners[0], corners[2], corners[3]]));
+        }
+    }
+    let made = Polyhedron::from_faces(&all, &faces).unwrap();
+    assert_eq!(made.polyhedron.faces().len(), 6);
+    assert_eq!(sixfold(&made.polyhedron), 48.0);
+    let corners = made.polyhedron.faces().iter();
+    let corners: Vec<usize> = corners.map(|face| face.corners().count()).collect();
+    assert_eq!(corners.iter().sum::<usize>(), 2 * 4 + 4 * 6);
+}

@@ -284,3 +284,42 @@ proptest! {
         prop_assert_eq!(known.brep.topology.faces.len(), hull.faces().len());
     }
 }
+
+#[test]
+fn a_straight_edge_may_have_corners_of_facets_in_its_middle() {
+    // A wedge of two slices: four facets of two planes meet in a corner on its upright edge. The
+    // determinants of its facets sum up to 6000.
+    let all: Vec<SpacePoint> = [
+        [20, 0, 0],
+        [0, 10, 0],
+        [0, -10, 0],
+        [20, 0, 5],
+        [0, 5, 5],
+        [0, -5, 5],
+        [20, 0, 10],
+        [0, 0, 10],
+    ]
+    .map(|p| p.map(n))
+    .to_vec();
+    let faces = [
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 4],
+        [2, 5, 4],
+        [2, 0, 5],
+        [0, 3, 5],
+        [3, 4, 6],
+        [4, 7, 6],
+        [4, 5, 7],
+        [5, 3, 6],
+        [5, 6, 7],
+        [2, 1, 0],
+    ];
+    for first in 0..3 {
+        let turned = faces.map(|f| [0, 1, 2].map(|k| f[(k + first) % 3]).to_vec());
+        let faces: Vec<PolyhedronFace> = turned.map(PolyhedronFace::simple).to_vec();
+        let made = Polyhedron::from_faces(&all, &faces).unwrap().polyhedron;
+        let tree = tree_of(|b| b.primitive(primitive(made)));
+        assert!((evaluated(&tree).mass().volume - 1000.0).abs() < 1e-9);
+    }
+}

@@ -10,7 +10,7 @@ use super::leaves::{corners, of_union, own_corners};
 use super::rounding::rounded_hull;
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
-use crate::figure::{Disc, Figure, FigurePoint};
+use crate::figure::{Disc, Figure, FigurePoint, HullElement};
 use crate::polyhedron::{Polyhedron, SpacePoint, cross};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
@@ -120,8 +120,8 @@ fn axes(leaves: &[PlacedPrimitive]) -> Vec<Motion> {
     }
 }
 
-/// The discs and corners of a leaf in two planes across z.
-fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, Disc)>> {
+/// The discs, arcs and corners of a leaf in two planes across z.
+fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, HullElement)>> {
     let motion = placed.motion.then(back);
     let [_, _, z] = motion.offset().clone();
     let [x, y, _] = motion.offset().clone();
@@ -131,7 +131,7 @@ fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, Disc)>
     let disc = |z: Rational, radius: &Rational| {
         let centre = [x.clone(), y.clone()];
         let radius = radius.clone();
-        (z, Disc { centre, radius })
+        (z, HullElement::Disc(Disc { centre, radius }))
     };
     match &placed.primitive {
         Primitive::Cylinder { radius, height } if is_upright => {
@@ -146,22 +146,19 @@ fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, Disc)>
             top,
         } if is_upright && top.is_one() => {
             let high = z.clone() + up * height;
-            let discs = figure.discs().into_iter().flat_map(|disc| {
-                let [u, v] = &disc.centre;
-                let centre: FigurePoint = std::array::from_fn(|i| {
-                    &turn[i][0] * u + &turn[i][1] * v + &motion.offset()[i]
-                });
-                [&z, &high].map(|z| {
-                    let (centre, radius) = (centre.clone(), disc.radius.clone());
-                    (z.clone(), Disc { centre, radius })
-                })
-            });
+            let place = |[u, v]: &FigurePoint| -> FigurePoint {
+                std::array::from_fn(|i| &turn[i][0] * u + &turn[i][1] * v + &motion.offset()[i])
+            };
+            let is_over = *up < Rational::ZERO;
+            let elements = figure.hull_elements();
+            let elements = elements.iter().map(|e| e.placed(&place, is_over));
+            let discs = elements.flat_map(|e| [(z.clone(), e.clone()), (high.clone(), e)]);
             Some(discs.collect())
         }
         other => {
             let own = own_corners(other)?;
             let points = own.iter().map(|p| motion.apply_point(p));
-            let point = |[x, y, z]: SpacePoint| (z, Disc::point([x, y]));
+            let point = |[x, y, z]: SpacePoint| (z, HullElement::Disc(Disc::point([x, y])));
             Some(points.map(point).collect())
         }
     }
@@ -183,33 +180,22 @@ fn between_planes(
     let Some(high) = all.iter().map(|(z, _)| z).max().cloned() else {
         return Ok(None);
     };
-    let at = |level: &Rational| -> Vec<Disc> {
+    let at = |level: &Rational| -> Vec<HullElement> {
         let own = all.iter().filter(|(z, _)| z == level);
-        own.map(|(_, disc)| disc.clone()).collect()
+        own.map(|(_, element)| element.clone()).collect()
     };
     let (base, top) = (at(&low), at(&high));
     if base.len() + top.len() < all.len() {
         return Ok(None);
     }
-    let [base, top] = [base, top].map(|discs| Figure::convex_hull(&discs));
+    let [base, top] = [base, top].map(|elements| Figure::hull_of_elements(&elements));
     match (base, top) {
-        (Ok(base), Ok(top)) if base == top && arcs_are_covered(&base, leaves) => {
-            Ok(Some(PlacedPrimitive {
-                primitive: Primitive::prism(base, &high - &low)?,
-                motion: Motion::translation([Rational::ZERO, Rational::ZERO, low]),
-            }))
-        }
+        (Ok(base), Ok(top)) if base == top => Ok(Some(PlacedPrimitive {
+            primitive: Primitive::prism(base, &high - &low)?,
+            motion: Motion::translation([Rational::ZERO, Rational::ZERO, low]),
+        })),
         _ => Ok(None),
     }
-}
-
-/// Whether the arcs of a hull are arcs of its operands: none of these is cut short.
-fn arcs_are_covered(hull: &Figure, leaves: &[PlacedPrimitive]) -> bool {
-    let is_whole = |placed: &PlacedPrimitive| match &placed.primitive {
-        Primitive::Prism { figure, .. } => Figure::hull_of(&[figure]).is_ok(),
-        _ => true,
-    };
-    hull.is_polygon() || leaves.iter().all(is_whole)
 }
 
 /// The hull of leaves that are round about z: the hull of their profile, revolved.

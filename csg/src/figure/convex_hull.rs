@@ -1,12 +1,13 @@
-//! The convex hull of points and discs: segments along common tangents, and arcs.
+//! The convex hull of points, discs and arcs: segments along common tangents, and arcs.
 
+use super::chain::joined;
 use super::roots::{root, shortened};
 use super::scalar::{FilteredPoint, orientation};
-use super::{
-    ArcTurn, ContourCorner, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, MAX_EDGES,
-};
-use premio_kernel::number::rational::{Rational, to_f64};
+use super::wrapping::{HullElement, wrapped};
+use super::{ArcTurn, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, MAX_EDGES};
+use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
 
 /// A disc, or a point if its radius is zero.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,6 +23,11 @@ impl Disc {
     pub fn point(centre: FigurePoint) -> Self {
         let radius = Rational::ZERO;
         Self { centre, radius }
+    }
+
+    /// Whether it is a point at this place.
+    fn is_at(&self, point: &FigurePoint) -> bool {
+        self.radius.is_zero() && self.centre == *point
     }
 
     /// Whether it contains another one.
@@ -41,21 +47,39 @@ impl Figure {
     /// The convex hull of some figures.
     ///
     /// # Errors
-    /// There are none, there are too many edges, or the hull has an arc of a circle beyond an arc
-    /// of the figures.
+    /// There are none, there are too many edges, or the hull has no area.
     pub fn hull_of(figures: &[&Self]) -> Result<Self, FigureError> {
-        let discs: Vec<Disc> = figures.iter().flat_map(|figure| figure.discs()).collect();
-        let hull = Self::convex_hull(&discs)?;
-        let arcs: Vec<&FigureEdge> = figures
-            .iter()
-            .flat_map(|figure| &figure.edges)
-            .filter(|edge| edge.arc.is_some())
-            .collect();
-        let is_covered = |edge: &FigureEdge| edge.arc.is_none() || covers(&arcs, edge);
-        match hull.edges.iter().all(is_covered) {
-            true => Ok(hull),
-            false => Err(FigureError::NoHull),
+        let elements = figures.iter().flat_map(|figure| figure.hull_elements());
+        Self::hull_of_elements(&elements.collect::<Vec<_>>())
+    }
+
+    /// Its corners, and its arcs that bulge. Arcs of a whole circle are a disc.
+    pub(crate) fn hull_elements(&self) -> Vec<HullElement> {
+        if let Some(disc) = self.as_disc() {
+            return vec![HullElement::Disc(disc)];
         }
+        let mut elements = Vec::new();
+        for contour in self.contours() {
+            let edges = without_joints(contour);
+            for edge in &edges {
+                let point = Disc::point(edge.start.clone());
+                elements.push(HullElement::Disc(point));
+                let Some(arc) = &edge.arc else { continue };
+                let disc = Disc {
+                    centre: arc.centre.clone(),
+                    radius: arc.radius.clone(),
+                };
+                match arc.turn {
+                    _ if edge.start == edge.end => elements.push(HullElement::Disc(disc)),
+                    ArcTurn::Counterclockwise => elements.push(HullElement::Arc {
+                        disc,
+                        ends: [edge.start.clone(), edge.end.clone()],
+                    }),
+                    ArcTurn::Clockwise => {}
+                }
+            }
+        }
+        elements
     }
 
     /// The discs of its arcs that bulge, and its corners. If the hull of these is the figure's, all
@@ -78,7 +102,7 @@ impl Figure {
 
     /// The discs and points whose convex hull is the figure, if there are any.
     pub(crate) fn convex_discs(&self) -> Option<Vec<Disc>> {
-        let hull = Self::hull_of(&[self]).ok()?;
+        let hull = Self::convex_hull(&self.discs()).ok()?;
         let (own, of_hull) = (self.area(), hull.area());
         let is_same =
             (of_hull - own).abs() <= own * f64::EPSILON.sqrt() && self.contours.len() == 1;
@@ -116,15 +140,26 @@ impl Figure {
     /// # Errors
     /// There are too many, or the hull has no area.
     pub fn convex_hull(discs: &[Disc]) -> Result<Self, FigureError> {
-        if discs.len() > MAX_EDGES {
-            let count = discs.len();
+        let elements = discs.iter().cloned().map(HullElement::Disc);
+        Self::hull_of_elements(&elements.collect::<Vec<_>>())
+    }
+
+    /// The convex hull of points, discs and arcs. The ends of an arc have to be among the points.
+    ///
+    /// # Errors
+    /// There are too many, or the hull has no area.
+    pub(crate) fn hull_of_elements(elements: &[HullElement]) -> Result<Self, FigureError> {
+        if elements.len() > MAX_EDGES {
+            let count = elements.len();
             return Err(FigureError::TooManyEdges { count });
         }
-        if discs.iter().all(|disc| disc.radius.is_zero()) {
-            return hull_of_points(discs);
+        let is_point = |element: &HullElement| element.disc().radius.is_zero();
+        if elements.iter().all(is_point) {
+            let points = elements.iter().map(HullElement::disc);
+            return hull_of_points(points);
         }
-        let discs = undominated(discs);
-        if let [disc] = &discs[..] {
+        let elements = undominated(elements);
+        if let [HullElement::Disc(disc)] = &elements[..] {
             let figure = Self::disc(&disc.radius)?;
             let map = super::PlaneMap {
                 offset: disc.centre.clone(),
@@ -132,17 +167,21 @@ impl Figure {
             };
             return figure.mapped(&map);
         }
-        let order = wrapped(&discs);
+        let order = wrapped(&elements);
+        if order.is_empty() {
+            return Err(FigureError::NoHull);
+        }
         let tangents: Vec<Tangent> = pairs(&order)
-            .map(|[i, j]| Tangent::new(&discs[i], &discs[j]))
+            .map(|[i, j]| Tangent::of(&elements[i], &elements[j]))
             .collect();
-        let mut corners = Vec::new();
+        let mut edges = Vec::new();
         for (k, tangent) in tangents.iter().enumerate() {
-            let disc = &discs[order[k]];
             let before = &tangents[(k + tangents.len() - 1) % tangents.len()];
+            let disc = elements[order[k]].disc();
             if !disc.radius.is_zero() && before.end != tangent.start {
-                corners.push(ContourCorner {
-                    point: before.end.clone(),
+                edges.push(FigureEdge {
+                    start: before.end.clone(),
+                    end: tangent.start.clone(),
                     arc: Some(FigureArc {
                         centre: disc.centre.clone(),
                         radius: disc.radius.clone(),
@@ -150,21 +189,43 @@ impl Figure {
                     }),
                 });
             }
-            corners.push(ContourCorner {
-                point: tangent.start.clone(),
-                arc: None,
-            });
+            if tangent.start != tangent.end {
+                edges.push(FigureEdge {
+                    start: tangent.start.clone(),
+                    end: tangent.end.clone(),
+                    arc: None,
+                });
+            }
         }
-        Self::from_contours(&[corners])
+        Ok(Self::of_contour(without_joints(&joined(edges))))
     }
 }
 
+/// The edges of a contour, of which neighbouring arcs of one circle are joined.
+fn without_joints(contour: &[FigureEdge]) -> Vec<FigureEdge> {
+    let mut kept: Vec<FigureEdge> = Vec::with_capacity(contour.len());
+    for edge in contour {
+        match kept.last_mut() {
+            Some(last) if edge.arc.is_some() && last.arc == edge.arc => {
+                last.end = edge.end.clone();
+            }
+            _ => kept.push(edge.clone()),
+        }
+    }
+    if let [first, .., last] = &kept[..]
+        && first.arc.is_some()
+        && first.arc == last.arc
+    {
+        kept[0].start = last.start.clone();
+        kept.pop();
+    }
+    kept
+}
+
 /// The hull of points: the monotone chain (Andrew 1979).
-fn hull_of_points(discs: &[Disc]) -> Result<Figure, FigureError> {
-    let mut points: Vec<FilteredPoint> = discs
-        .iter()
-        .map(|disc| FilteredPoint::new(&disc.centre))
-        .collect();
+fn hull_of_points<'a>(points: impl Iterator<Item = &'a Disc>) -> Result<Figure, FigureError> {
+    let points = points.map(|point| FilteredPoint::new(&point.centre));
+    let mut points: Vec<FilteredPoint> = points.collect();
     points.sort_by(|a, b| a.compare(b, 0).then_with(|| a.compare(b, 1)));
     points.dedup_by(|a, b| a.is_at(b));
     let half = |points: &mut dyn Iterator<Item = &FilteredPoint>| {
@@ -186,15 +247,26 @@ fn hull_of_points(discs: &[Disc]) -> Result<Figure, FigureError> {
     Figure::polygon(&[corners.collect()])
 }
 
-/// The discs that no other one contains.
-fn undominated(discs: &[Disc]) -> Vec<Disc> {
-    let mut order: Vec<&Disc> = discs.iter().collect();
-    order.sort_by(|a, b| b.radius.cmp(&a.radius));
-    let mut kept: Vec<Disc> = Vec::new();
-    for disc in order {
-        if !kept.iter().any(|larger| larger.contains(disc)) {
-            kept.push(disc.clone());
+/// The elements that no disc contains, each of them once.
+fn undominated(elements: &[HullElement]) -> Vec<HullElement> {
+    let mut order: Vec<&HullElement> = elements.iter().collect();
+    order.sort_by(|a, b| b.disc().radius.cmp(&a.disc().radius));
+    let mut discs: Vec<&Disc> = Vec::new();
+    let mut kept: Vec<HullElement> = Vec::new();
+    let mut known: BTreeSet<&FigurePoint> = BTreeSet::new();
+    for element in order {
+        let disc = element.disc();
+        let is_repeated = match element {
+            HullElement::Disc(_) if disc.radius.is_zero() => !known.insert(&disc.centre),
+            _ => kept.contains(element),
+        };
+        if is_repeated || discs.iter().any(|larger| larger.contains(disc)) {
+            continue;
         }
+        if matches!(element, HullElement::Disc(_)) && !disc.radius.is_zero() {
+            discs.push(disc);
+        }
+        kept.push(element.clone());
     }
     kept
 }
@@ -205,65 +277,6 @@ fn pairs(order: &[usize]) -> impl Iterator<Item = [usize; 2]> {
     order.iter().zip(next).map(|(&i, &j)| [i, j])
 }
 
-/// The order in which the boundary of the hull passes the discs, counterclockwise: gift wrapping
-/// with tangents (Jarvis 1973). A disc may be passed several times.
-fn wrapped(discs: &[Disc]) -> Vec<usize> {
-    let near: Vec<([f64; 2], f64)> = discs
-        .iter()
-        .map(|disc| (disc.centre.each_ref().map(to_f64), to_f64(&disc.radius)))
-        .collect();
-    // A tangent along a third disc differs in direction by rounding only.
-    let same = f64::EPSILON.sqrt() * 16.0;
-    let tangent = |i: usize, j: usize| {
-        let ((c, r), (d, s)) = (near[i], near[j]);
-        let u = [d[0] - c[0], d[1] - c[1]];
-        let along = (u[0] * u[0] + u[1] * u[1] - (r - s) * (r - s))
-            .max(0.0)
-            .sqrt();
-        (u[1].atan2(u[0]) + (r - s).atan2(along), along)
-    };
-    let lowest = |i: &usize| near[*i].0[1] - near[*i].1;
-    let start = (0..near.len()).min_by(|a, b| {
-        let x = |i: &usize| near[*i].0[0];
-        lowest(a).total_cmp(&lowest(b)).then(x(b).total_cmp(&x(a)))
-    });
-    let Some(start) = start else {
-        return Vec::new();
-    };
-    let mut order = vec![start];
-    let mut heading = 0.0;
-    for _ in 0..4 * near.len() {
-        let at = order[order.len() - 1];
-        let turn = |j: usize| {
-            let by = (tangent(at, j).0 - heading).rem_euclid(std::f64::consts::TAU);
-            if by > std::f64::consts::TAU - same {
-                0.0
-            } else {
-                by
-            }
-        };
-        let others = (0..near.len()).filter(|&j| j != at);
-        let next = others.min_by(|&a, &b| {
-            let (s, t) = (turn(a), turn(b));
-            let farther = tangent(at, b).1.total_cmp(&tangent(at, a).1);
-            if (s - t).abs() <= same {
-                farther
-            } else {
-                s.total_cmp(&t)
-            }
-        });
-        let Some(next) = next else { break };
-        heading = tangent(at, next).0;
-        let is_closed = order.len() > 1 && order[0] == at && order[1] == next;
-        if is_closed {
-            order.pop();
-            break;
-        }
-        order.push(next);
-    }
-    order
-}
-
 /// The common tangent of two discs that has both on its left.
 struct Tangent {
     start: FigurePoint,
@@ -271,7 +284,23 @@ struct Tangent {
 }
 
 impl Tangent {
-    fn new(a: &Disc, b: &Disc) -> Self {
+    fn of(a: &HullElement, b: &HullElement) -> Self {
+        let at = |p: &FigurePoint| Self {
+            start: p.clone(),
+            end: p.clone(),
+        };
+        match (a, b) {
+            (HullElement::Arc { ends, .. }, HullElement::Disc(point)) if point.is_at(&ends[1]) => {
+                at(&ends[1])
+            }
+            (HullElement::Disc(point), HullElement::Arc { ends, .. }) if point.is_at(&ends[0]) => {
+                at(&ends[0])
+            }
+            _ => Self::between(a.disc(), b.disc()),
+        }
+    }
+
+    fn between(a: &Disc, b: &Disc) -> Self {
         let [x, y] = [0, 1].map(|i| &b.centre[i] - &a.centre[i]);
         let less = &a.radius - &b.radius;
         let square = square(a, b);
@@ -288,44 +317,4 @@ impl Tangent {
             end: at(b),
         }
     }
-}
-
-/// Whether arcs of the same circle cover an arc together.
-fn covers(arcs: &[&FigureEdge], edge: &FigureEdge) -> bool {
-    let Some(of) = &edge.arc else { return false };
-    // Angles after the start of the edge; the slack is far above rounding.
-    let slack = f64::EPSILON.sqrt();
-    let angle = |from: &FigurePoint, to: &FigurePoint| {
-        let span = FigureEdge {
-            start: from.clone(),
-            end: to.clone(),
-            arc: Some(FigureArc {
-                turn: ArcTurn::Counterclockwise,
-                ..of.clone()
-            }),
-        };
-        span.arc.as_ref().map_or(0.0, |arc| span.turned(arc))
-    };
-    let full = std::f64::consts::TAU;
-    let mut parts: Vec<[f64; 2]> = Vec::new();
-    for known in arcs {
-        let is_same = |arc: &FigureArc| arc.centre == of.centre && arc.radius == of.radius;
-        let Some(arc) = known.arc.as_ref().filter(|arc| is_same(arc)) else {
-            continue;
-        };
-        let [first, last] = match arc.turn {
-            ArcTurn::Counterclockwise => [&known.start, &known.end],
-            ArcTurn::Clockwise => [&known.end, &known.start],
-        };
-        let (from, length) = (angle(&edge.start, first), angle(first, last));
-        parts.extend([[from, from + length], [from - full, from - full + length]]);
-    }
-    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let mut reached = 0.0;
-    for [from, to] in parts {
-        if from <= reached + slack {
-            reached = f64::max(reached, to);
-        }
-    }
-    reached >= angle(&edge.start, &edge.end) - slack
 }

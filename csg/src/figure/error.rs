@@ -39,8 +39,8 @@ pub enum FigureError {
         /// The rounded place.
         at: [String; 2],
     },
-    /// The convex hull has an arc that no figure has.
-    #[error("a convex hull of arcs that end before the hull's arc does")]
+    /// It is unclear in which order a convex hull passes arcs.
+    #[error("a convex hull of arcs that nearly coincide")]
     NoHull,
     /// A Minkowski sum is not supported.
     #[error("a Minkowski sum of figures of which none is a disc or a convex polygon")]

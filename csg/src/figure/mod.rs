@@ -17,6 +17,7 @@ mod roots;
 mod scalar;
 mod set_operations;
 mod straightened;
+mod wrapping;
 
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
@@ -27,6 +28,7 @@ pub use outline::ContourCorner;
 pub(crate) use scalar::direction;
 pub(crate) use set_operations::FigureExpression;
 pub use set_operations::FigureOperation;
+pub(crate) use wrapping::HullElement;
 
 /// The largest number of edges of a figure.
 pub const MAX_EDGES: usize = 100_000;
@@ -206,6 +208,14 @@ impl Figure {
         Self::polygon(&[corners.to_vec()])
     }
 
+    /// The figure that one contour bounds.
+    fn of_contour(edges: Vec<FigureEdge>) -> Self {
+        Self {
+            edges,
+            contours: vec![0],
+        }
+    }
+
     /// The disc about the origin.
     ///
     /// # Errors
@@ -225,10 +235,8 @@ impl Figure {
                 turn: ArcTurn::Counterclockwise,
             }),
         };
-        Ok(Self {
-            edges: vec![edge(&right, &left), edge(&left, &right)],
-            contours: vec![0],
-        })
+        let edges = vec![edge(&right, &left), edge(&left, &right)];
+        Ok(Self::of_contour(edges))
     }
 
     /// The image under a map.
@@ -413,10 +421,10 @@ impl Figure {
         })
     }
 
-    /// Its extent along the first axis, rounded.
-    pub(crate) fn width(&self) -> Rational {
+    /// Its extent along the first axis together with the origin, rounded.
+    pub(crate) fn reach(&self) -> Rational {
         let [lo, hi] = self.bounds();
-        from_f64(hi[0] - lo[0]).unwrap_or_default()
+        from_f64(hi[0].max(0.0) - lo[0].min(0.0)).unwrap_or_default()
     }
 
     /// Its numbers: the coordinates of all ends and centres, and all radii.

@@ -189,8 +189,14 @@ fn hulls_of_figures_with_arcs() {
     )
     .unwrap();
     assert_area(&half, 2.0 * PI);
-    let own = Figure::hull_of(&[&half]);
-    assert_eq!(own, Err(FigureError::NoHull));
+    let own = Figure::hull_of(&[&half]).unwrap();
+    assert_area(&own, 2.0 * PI);
+    assert_eq!(own.edges().len(), 2);
+    // Below the half disc the hull is a trapezium between the diameter and the square: the tangents
+    // of the whole circle, which is not there, would give it other corners.
+    let with_square = Figure::hull_of(&[&half, &moved(&square(1), 0, -3)]).unwrap();
+    assert_area(&with_square, 2.0 * PI + 7.5);
+    assert_eq!(with_square.edges().len(), 4);
     let slot = Figure::hull_of(&[&disc(1), &moved(&disc(1), 4, 0)]).unwrap();
     assert_area(&slot, 8.0 + PI);
     let again = Figure::hull_of(&[&slot]).unwrap();

@@ -9,9 +9,11 @@
 //! | `rounding` | sums with a ball |
 //! | `minkowski` | other sums |
 //! | `affine` | images under affine maps |
+//! | `extent` | sizes along the axes |
 //! | `projection` | sections with the plane z = 0, and shadows on it |
 
 mod affine;
+mod extent;
 mod frames;
 mod hull;
 mod leaves;
@@ -20,6 +22,7 @@ mod projection;
 mod rounding;
 
 pub use affine::{AffineMap, mapped};
+pub use extent::extent;
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
 pub use projection::{section, shadow};
@@ -57,6 +60,9 @@ pub enum ConstructionError {
     /// A primitive of the result is not valid.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),
+    /// The boundary of a solid, from which its size comes, cannot be evaluated.
+    #[error("{0}")]
+    Boundary(Box<str>),
     /// The tree exceeds a limit.
     #[error(transparent)]
     Tree(#[from] TreeError),

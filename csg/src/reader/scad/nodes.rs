@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::rational::{Rational, from_decimal, to_f64};
 
 use super::super::FacetLimit;
@@ -22,9 +21,8 @@ use super::sweep::{Raise, Spin, operation};
 use super::syntax::{ScadFile, ScadNode};
 use crate::builder::{Builder, SolidId};
 use crate::construction::{
-    AffineMap, ConstructionError, convex_hull, mapped, minkowski_sum, section, shadow,
+    AffineMap, ConstructionError, convex_hull, extent, mapped, minkowski_sum, section, shadow,
 };
-use crate::evaluate::{EvaluationOptions, evaluate};
 use crate::figure::{Figure, FigureError, FigureOperation, OffsetJoin, PlaneMap};
 use premio_text::escape::quote;
 
@@ -162,7 +160,8 @@ impl<'c, 'a> Evaluator<'c, 'a> {
             "linear_extrude" => {
                 let raise = Raise::new(arguments)?;
                 let region = self.region(children, name)?;
-                let part = region.map(|r| raise.solid(&mut self.builder, &r, arguments));
+                let rule = &self.rule;
+                let part = region.map(|r| raise.solid(&mut self.builder, &r, arguments, rule));
                 Ok(solid(part.transpose()?))
             }
             "rotate_extrude" => {
@@ -401,15 +400,11 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 Ok(Geometry::Plane(region.mapped(&map, None)))
             }
             Geometry::Solid(part) => {
-                let tree = self.builder.finish(part);
-                let tree = tree.map_err(|error| construction_error(&error.into(), &span))?;
-                let known = evaluate(&tree, &EvaluationOptions::default());
-                let known = known.map_err(|error| {
-                    let expected = "a solid whose size is known";
-                    SpannedError::input(span.clone(), error.to_string(), expected)
-                })?;
-                let Aabb { min, max } = known.bounds;
-                let extent = [0, 1, 2].map(|i| max[i] - min[i]);
+                let extent = match extent(&self.builder, part) {
+                    Ok(Some(extent)) => extent,
+                    Ok(None) => return Ok(Geometry::Nothing),
+                    Err(error) => return Err(construction_error(&error, &span)),
+                };
                 let map = AffineMap::scale(&factors(&sizes, &auto, &extent));
                 let image = mapped(&mut self.builder, part, &map);
                 constructed(image, &span).map(solid)

@@ -20,6 +20,7 @@ pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>)
         ConstructionError::Elliptic => {
             "a scale along the axis of a cylinder, equal in all directions, or of plane faces"
         }
+        ConstructionError::Boundary(_) => "a solid whose size is known",
         ConstructionError::NoProjection(_) => "a result of segments and arcs",
         _ => "a valid shape",
     };

@@ -29,8 +29,8 @@ impl FacetRule {
         }
     }
 
-    /// Whether circles without `$fn` are polygons, by their size.
-    pub fn is_by_size(&self) -> bool {
+    /// Whether OpenSCAD's own solid is wanted: every circle is a polygon, by its size.
+    pub fn is_literal(&self) -> bool {
         self.limit == FacetLimit::All
     }
 
@@ -75,22 +75,47 @@ impl FacetRule {
     }
 }
 
+/// How finely a node is cut into segments: `$fn`, `$fa` and `$fs`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fineness {
+    /// The number of segments of a whole turn; `None` if the other two limit it.
+    pub sides: Option<f64>,
+    /// The least angle of a segment in degrees.
+    pub angle: f64,
+    /// The least length of a segment.
+    pub length: f64,
+}
+
+impl Fineness {
+    /// The least value of `$fa` and `$fs`.
+    const LEAST: f64 = 0.01;
+
+    pub fn new(arguments: &Arguments) -> Result<Self, SpannedError> {
+        let number = |name: &str, default: f64| match arguments.find(name) {
+            Some(argument) => Ok(to_f64(argument.number()?)),
+            None => Ok(default),
+        };
+        let sides = number("$fn", 0.0)?;
+        Ok(Self {
+            sides: (sides > 0.0).then_some(sides),
+            angle: number("$fa", 12.0)?.max(Self::LEAST),
+            length: number("$fs", 2.0)?.max(Self::LEAST),
+        })
+    }
+}
+
 /// The number of segments that OpenSCAD gives a circle.
 pub(super) fn fragments(arguments: &Arguments, radius: f64) -> Result<f64, SpannedError> {
-    let number = |name: &str, default: f64| match arguments.find(name) {
-        Some(argument) => Ok(to_f64(argument.number()?)),
-        None => Ok(default),
-    };
-    let (count, angle, length) = (
-        number("$fn", 0.0)?,
-        number("$fa", 12.0)?,
-        number("$fs", 2.0)?,
-    );
-    Ok(if count > 0.0 {
-        count.max(3.0).floor()
-    } else {
-        let by_angle = 360.0 / angle.max(0.01);
-        let by_length = radius * std::f64::consts::TAU / length.max(0.01);
-        by_angle.min(by_length).max(5.0).ceil()
+    let Fineness {
+        sides,
+        angle,
+        length,
+    } = Fineness::new(arguments)?;
+    Ok(match sides {
+        Some(sides) => sides.max(3.0).floor(),
+        None => {
+            let by_length = radius * std::f64::consts::TAU / length;
+            (360.0 / angle).min(by_length).max(5.0).ceil()
+        }
     })
 }

@@ -9,6 +9,7 @@
 //! | `figures` | plane figures |
 //! | `region` | set operations on these |
 //! | `shapes` | solids |
+//! | `slices` | how many slices an extrusion has |
 //! | `twist` | extrusions that are made of slices |
 //! | `sweep` | extrusions and revolutions |
 //! | `matrix` | motions and scales |
@@ -24,6 +25,7 @@ mod nodes;
 mod refusal;
 mod region;
 mod shapes;
+mod slices;
 mod sweep;
 mod syntax;
 mod twist;

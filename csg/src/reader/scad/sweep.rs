@@ -1,5 +1,6 @@
 //! `linear_extrude` and `rotate_extrude`.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use premio_kernel::number::rational::Rational;
@@ -59,6 +60,7 @@ impl Raise {
         builder: &mut Builder,
         region: &Region,
         arguments: &Arguments,
+        rule: &FacetRule,
     ) -> Result<SolidId, SpannedError> {
         if self.height.is_zero() {
             return Ok(SolidId::EMPTY);
@@ -68,11 +70,18 @@ impl Raise {
                 let Some(figure) = region.evaluated(&arguments.span)? else {
                     return Ok(SolidId::EMPTY);
                 };
-                let made = twisted(&figure, &self.height, &self.top, twist, arguments)?;
+                let made = twisted(
+                    &figure,
+                    &self.height,
+                    &self.top,
+                    twist,
+                    rule.is_literal(),
+                    arguments,
+                )?;
                 let polyhedron = Arc::new(made);
                 builder.primitive(Primitive::Polyhedron { polyhedron })
             }
-            None => self.straight(builder, region)?,
+            None => as_parts_or_whole(region, &arguments.span, |r| self.straight(builder, r))?,
         };
         let lift = Transform::shift([Rational::ZERO, Rational::ZERO, self.bottom.clone()]);
         Ok(builder.moved(part, lift))
@@ -120,6 +129,24 @@ impl Raise {
             None => Primitive::scaled_prism(placed, self.height.clone(), factor.clone()),
         };
         Ok(builder.primitive(scaled.map_err(wrong)?))
+    }
+}
+
+/// The solid of a region: from the figures that it combines, and if one of them has no exact solid,
+/// from their result in the plane.
+fn as_parts_or_whole(
+    region: &Region,
+    span: &Range<usize>,
+    mut solid: impl FnMut(&Region) -> Result<SolidId, SpannedError>,
+) -> Result<SolidId, SpannedError> {
+    let refused = match solid(region) {
+        Err(refused) if matches!(region, Region::Combined { .. }) => refused,
+        made => return made,
+    };
+    match region.evaluated(span) {
+        Ok(Some(whole)) => solid(&Region::new(whole, region.span())).map_err(|_| refused),
+        Ok(None) => Ok(SolidId::EMPTY),
+        Err(_) => Err(refused),
     }
 }
 
@@ -328,14 +355,14 @@ impl Spin {
         rule: &mut FacetRule,
     ) -> Result<SolidId, SpannedError> {
         let span = &arguments.span;
-        // OpenSCAD counts segments by the width of the figure.
-        let width = match rule.is_by_size() {
+        // OpenSCAD counts segments by the reach of the figure from the axis.
+        let reach = match rule.is_literal() {
             true => region
                 .evaluated(span)?
-                .map_or(Rational::ONE, |figure| figure.width()),
+                .map_or(Rational::ONE, |figure| figure.reach()),
             false => Rational::ONE,
         };
-        let part = match rule.sides(arguments, &width)? {
+        let part = match rule.sides(arguments, &reach)? {
             Some(sides) => {
                 let Some(figure) = region.evaluated(span)? else {
                     return Ok(SolidId::EMPTY);
@@ -345,7 +372,7 @@ impl Spin {
                 let polyhedron = Arc::new(made);
                 builder.primitive(Primitive::Polyhedron { polyhedron })
             }
-            None => self.of_region(builder, region, false)?,
+            None => as_parts_or_whole(region, span, |r| self.of_region(builder, r, false))?,
         };
         Ok(builder.moved(part, self.start.clone()))
     }

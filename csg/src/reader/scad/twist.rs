@@ -8,40 +8,36 @@ use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 use super::super::error::SpannedError;
 use super::arguments::Arguments;
 use super::facets::fragments;
+use super::slices::slices;
 use crate::figure::{ArcTurn, Figure, FigureEdge, FigurePoint, direction};
 use crate::polyhedron::{
-    MAX_CORNERS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, index_loops,
+    MAX_CORNERS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, dot, index_loops,
 };
 
-/// How an extrusion is cut into slices.
+/// The twist of an extrusion that is cut into slices.
 pub(super) struct Twist {
     /// The angle of the top in degrees, clockwise as seen from above.
     degrees: Rational,
-    slices: usize,
 }
 
-/// The largest number of slices.
-const MAX_SLICES: f64 = 10_000.0;
-
 impl Twist {
-    /// The slices of an extrusion; `None` if its sides are plane.
+    /// The twist of an extrusion; `None` if its sides are plane.
     pub fn new(arguments: &Arguments, top: &[Rational; 2]) -> Result<Option<Self>, SpannedError> {
         let degrees = match arguments.find("twist") {
             Some(twist) => twist.number()?.clone(),
             None => Rational::ZERO,
         };
-        if degrees.is_zero() && top[0] == top[1] {
-            return Ok(None);
+        let is_straight = degrees.is_zero() && top[0] == top[1];
+        Ok((!is_straight).then_some(Self { degrees }))
+    }
+
+    /// How its sides are cut. A twist stands for curved sides, which every cut approximates; where
+    /// OpenSCAD's own solid is wanted, and where only the scale is uneven, its cuts are taken.
+    fn diagonal(&self, is_literal: bool) -> SideDiagonal {
+        match is_literal || self.degrees.is_zero() {
+            true => SideDiagonal::Shorter,
+            false => SideDiagonal::Upward,
         }
-        let slices = match arguments.find("slices") {
-            Some(slices) => to_f64(slices.number()?),
-            None => {
-                let turn = to_f64(&degrees).abs() / 360.0;
-                (turn * fragments(arguments, 1.0)?).ceil()
-            }
-        };
-        let slices = slices.clamp(1.0, MAX_SLICES) as usize;
-        Ok(Some(Self { degrees, slices }))
     }
 }
 
@@ -92,37 +88,54 @@ fn chords(edge: &FigureEdge, arguments: &Arguments) -> Result<Vec<FigurePoint>, 
     Ok(points)
 }
 
-/// Whether a polygon runs clockwise.
-fn is_clockwise(outline: &[FigurePoint]) -> bool {
-    let next = outline.iter().cycle().skip(1);
-    let area = outline
-        .iter()
-        .zip(next)
-        .fold(Rational::ZERO, |sum, (p, q)| {
-            sum + (&p[0] * &q[1] - &p[1] * &q[0])
-        });
-    area < Rational::ZERO
+/// How the sides between two slices, which are not plane, are cut into triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SideDiagonal {
+    /// From the lower end to the upper start of every side, as seen with the material on the left.
+    Upward,
+    /// Along the shorter diagonal, as OpenSCAD 2021.01 and later do.
+    Shorter,
 }
 
-/// The polyhedron of an extrusion with slices. A side between two slices is cut as OpenSCAD 2021.01
-/// does: from its lower end to its upper start, and the other way in holes and if the twist is
-/// negative.
+impl SideDiagonal {
+    /// Whether the side with the lower corners `a`, `b` and the upper corners `d`, `c` above them is
+    /// cut from `a` to `c`.
+    fn is_downward(self, [a, b, c, d]: [&SpacePoint; 4], is_flat: bool) -> bool {
+        match self {
+            Self::Upward => false,
+            // Where the top has no width, the other cut would enclose nothing.
+            Self::Shorter if is_flat => squared(b, d) < squared(a, c),
+            Self::Shorter => squared(a, c) < squared(b, d),
+        }
+    }
+}
+
+/// The squared distance of two points.
+fn squared(a: &SpacePoint, b: &SpacePoint) -> Rational {
+    let away: SpacePoint = std::array::from_fn(|i| &a[i] - &b[i]);
+    dot(&away, &away)
+}
+
+/// The polyhedron of an extrusion with slices; `is_literal` demands OpenSCAD's own solid.
 pub(super) fn twisted(
     figure: &Figure,
     height: &Rational,
     top: &[Rational; 2],
     twist: &Twist,
+    is_literal: bool,
     arguments: &Arguments,
 ) -> Result<Polyhedron, SpannedError> {
+    let diagonal = twist.diagonal(is_literal);
     let outlines = polygons(figure, arguments)?;
+    let slices = slices(&outlines, height, &twist.degrees, top, arguments)?;
     let corners: usize = outlines.iter().map(Vec::len).sum();
-    let count = corners.saturating_mul(6 * twist.slices);
+    let count = corners.saturating_mul(6 * slices);
     if count > MAX_CORNERS {
         let error = PolyhedronError::TooManyCorners { count };
         return Err(bad_slices(&error, &arguments.span));
     }
     let ring = |slice: usize| {
-        let t = Rational::from(slice) / Rational::from(twist.slices);
+        let t = Rational::from(slice) / Rational::from(slices);
         let [cos, sin] = direction(&(-&twist.degrees * &t));
         let factor = top
             .each_ref()
@@ -135,20 +148,21 @@ pub(super) fn twisted(
         };
         outlines.iter().flatten().map(place).collect::<Vec<_>>()
     };
-    let rings: Vec<Vec<SpacePoint>> = (0..=twist.slices).map(ring).collect();
+    let rings: Vec<Vec<SpacePoint>> = (0..=slices).map(ring).collect();
     let count = rings[0].len();
     let points = rings.concat();
     let mut faces = Vec::new();
     let loops = index_loops(outlines.iter().map(Vec::len));
-    let is_back = twist.degrees < Rational::ZERO;
-    for (corners, outline) in loops.iter().zip(&outlines) {
-        let is_hole = is_clockwise(outline);
-        for slice in 0..twist.slices {
+    let has_flat_top = top.iter().any(Rational::is_zero);
+    for corners in &loops {
+        for slice in 0..slices {
+            let is_flat = has_flat_top && slice + 1 == slices;
             let next = corners.iter().cycle().skip(1);
             for (&i, &j) in corners.iter().zip(next) {
                 let [a, b] = [i, j].map(|k| k + slice * count);
                 let [d, c] = [a, b].map(|k| k + count);
-                let triangles = match is_back != is_hole {
+                let side = [a, b, c, d].map(|k| &points[k]);
+                let triangles = match diagonal.is_downward(side, is_flat) {
                     true => [vec![a, b, c], vec![a, c, d]],
                     false => [vec![a, b, d], vec![b, c, d]],
                 };
@@ -158,7 +172,7 @@ pub(super) fn twisted(
     }
     let backwards = |corners: &Vec<usize>| corners.iter().rev().copied().collect();
     let base = loops.iter().map(backwards).collect();
-    let up = |corners: &Vec<usize>| corners.iter().map(|i| i + count * twist.slices).collect();
+    let up = |corners: &Vec<usize>| corners.iter().map(|i| i + count * slices).collect();
     let lid = loops.iter().map(up).collect();
     faces.extend([base, lid].map(|loops| PolyhedronFace { loops }));
     let made = Polyhedron::from_faces(&points, &faces);

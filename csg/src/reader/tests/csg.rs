@@ -164,7 +164,8 @@ fn small_numbers_of_sides_are_polygons() {
     let Primitive::Polyhedron { polyhedron } = &leaf.primitive else {
         panic!("a polyhedron");
     };
-    assert_eq!(polyhedron.faces().len(), 90);
+    // Two faces with thirty sides, and thirty walls.
+    assert_eq!(polyhedron.faces().len(), 32);
     let ring = "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(r = 1); }";
     let polygonal = format!("rotate_extrude($fn = 8) {{ {ring} }}");
     assert!(read_text(&polygonal, Format::Csg).is_err());
@@ -267,4 +268,37 @@ fn comments_texts_and_blocks_without_braces() {
         "// one\n/* two */ color([1, 0, 0, 1]) group() cube(size = 1); color(\"red\") { cube(2); };",
     );
     assert_eq!(tree.leaves().count(), 2);
+}
+
+/// The numbers of slices and the volumes are those of OpenSCAD 2021.01.
+#[test]
+fn extrusions_have_the_slices_of_openscad() {
+    let cases = [
+        ("twist = 90, scale = [1, 1]", 8, 4299.524),
+        ("twist = -90, scale = [1, 1]", 8, 4299.524),
+        ("twist = 90, scale = [1, 1], $fn = 20", 5, 4449.77),
+        ("twist = 90, scale = [0.5, 0.5]", 8, 2507.668),
+        ("scale = [0.3, 2]", 11, 3666.667),
+    ];
+    let options = ReadOptions {
+        facets: FacetLimit::All,
+        ..ReadOptions::default()
+    };
+    for (arguments, slices, volume) in cases {
+        let square = "square(size = [20, 10], center = true);";
+        let text = format!("linear_extrude(height = 20, {arguments}) {{ {square} }}");
+        let tree = read("part", text.as_bytes(), Format::Csg, &options)
+            .unwrap()
+            .tree;
+        let (_, leaf) = tree.leaves().next().unwrap();
+        let Primitive::Polyhedron { polyhedron } = &leaf.primitive else {
+            panic!("a polyhedron");
+        };
+        assert_eq!(polyhedron.points().len(), 4 * (slices + 1), "{arguments}");
+        let known =
+            crate::evaluate::evaluate(&tree, &crate::evaluate::EvaluationOptions::default())
+                .unwrap();
+        let found = known.mass().volume;
+        assert!((found - volume).abs() < 1e-2, "{arguments}: {found}");
+    }
 }

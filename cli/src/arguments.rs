@@ -16,6 +16,8 @@ pub use predict::{
     AdviseOptions, CompareOptions, GoalName, MergeOptions, ModelCommand, ModelOptions, ModelOutput,
     ModelRunOptions, PredictOptions, RecordsFormat, RenderOptions, SchemaName, SchemaOptions,
 };
+use premio::files::SystemFonts;
+use premio_csg::lettering::Fonts;
 use premio_csg::reader::{FacetLimit, Includes, ReadOptions, ValueOverride};
 use premio_kernel::unit::Unit;
 pub use sheet::{SheetArguments, ViewName};
@@ -186,13 +188,14 @@ impl ReadingOptions {
         }
     }
 
-    /// The options of the readers, with the loader of included files.
+    /// The options of the readers, with the loader of included files and the fonts of the machine.
     pub fn options(&self, includes: Includes) -> ReadOptions {
         ReadOptions {
             facets: self.facets(),
             part: self.part.clone(),
             overrides: self.define.overrides.clone(),
             includes,
+            fonts: Fonts::new(SystemFonts::default()),
         }
     }
 }

@@ -3,6 +3,7 @@ pub mod builder;
 pub mod construction;
 pub mod evaluate;
 pub mod figure;
+pub mod lettering;
 pub mod object_model;
 pub mod polyhedron;
 pub mod primitive;

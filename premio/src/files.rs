@@ -1,7 +1,9 @@
-//! Files that appear whole or not at all, and files that a description includes.
+//! Files that appear whole or not at all, and files and fonts that a description needs.
 
+mod fonts;
 mod included;
 
+pub use fonts::SystemFonts;
 pub use included::{IncludedFiles, find_included};
 
 use std::fs;

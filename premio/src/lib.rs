@@ -102,6 +102,7 @@ pub use view::{View, ViewArc};
 pub use write::{ExportSettings, SolidFormat, sheet_to_dxf, sheet_to_svg};
 
 pub use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions};
+pub use premio_csg::lettering::Fonts;
 pub use premio_csg::reader::{FacetLimit, Format, Includes, ReadOptions, ValueOverride};
 pub use premio_csg::recover::rounding::Rounding;
 pub use premio_csg::recover::{PrimitiveRelation, PrimitiveRelationCount, Recovery};

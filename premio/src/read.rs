@@ -1,7 +1,8 @@
 //! Reading descriptions.
 
-use crate::files::IncludedFiles;
+use crate::files::{IncludedFiles, SystemFonts};
 use crate::{Error, Expression, Result};
+use premio_csg::lettering::Fonts;
 use premio_csg::reader::{self, Format, Includes, ReadOptions};
 use premio_predict::model::record::DescriptionRecord;
 use std::fs;
@@ -65,13 +66,13 @@ pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Expres
     })?;
     let bytes = fs::read(path).map_err(|source| Error::file(path, source))?;
     let name = path.display().to_string();
-    if options.includes.is_available() {
-        return read_bytes(&name, &bytes, format, options);
+    let mut options = options.clone();
+    if !options.includes.is_available() {
+        options.includes = Includes::new(IncludedFiles::default());
     }
-    let options = ReadOptions {
-        includes: Includes::new(IncludedFiles::default()),
-        ..options.clone()
-    };
+    if !options.fonts.has_source() {
+        options.fonts = Fonts::new(SystemFonts::default());
+    }
     read_bytes(&name, &bytes, format, &options)
 }
 

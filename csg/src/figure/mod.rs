@@ -10,6 +10,7 @@ mod chain;
 mod convex_hull;
 mod error;
 mod minkowski;
+mod nonzero;
 mod offset;
 mod outline;
 mod polygonal;

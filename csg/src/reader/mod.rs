@@ -28,6 +28,7 @@ use error::{OtherText, SpannedError};
 pub use includes::{IncludeError, IncludeLoader, IncludePath, Includes, ValueOverride};
 
 use crate::builder::{Builder, SolidId};
+use crate::lettering::Fonts;
 use crate::tree::Tree;
 use premio_text::escape::quote;
 
@@ -154,6 +155,8 @@ pub struct ReadOptions {
     pub overrides: Vec<ValueOverride>,
     /// The loader of the files that a `.padl` text includes.
     pub includes: Includes,
+    /// The fonts of texts.
+    pub fonts: Fonts,
 }
 
 /// A remark for the author, and its span in the text in bytes.

@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 4;
 pub(super) enum Value {
     Number(Rational),
     List(Vec<Argument>),
-    Text,
+    Text(String),
     Bool(bool),
     Undefined,
     NotFinite,
@@ -42,7 +42,7 @@ impl Argument {
         match &self.value {
             Value::Number(number) => show(number),
             Value::List(_) => "a list".to_owned(),
-            Value::Text => "a text".to_owned(),
+            Value::Text(_) => "a text".to_owned(),
             Value::Bool(value) => format!("`{value}`"),
             Value::Undefined => "`undef`".to_owned(),
             Value::NotFinite => "a number that is not finite".to_owned(),
@@ -190,6 +190,15 @@ impl Arguments {
         })
     }
 
+    /// The text of an argument; empty if it is absent.
+    pub(super) fn words(&self, name: &str) -> Result<&str, SpannedError> {
+        match self.find(name).map(|argument| (&argument.value, argument)) {
+            None => Ok(""),
+            Some((Value::Text(text), _)) => Ok(text),
+            Some((_, argument)) => Err(argument.wrong("a text")),
+        }
+    }
+
     pub(super) fn flag(&self, name: &str) -> Result<bool, SpannedError> {
         self.find(name).map_or(Ok(false), Argument::bool)
     }
@@ -230,7 +239,7 @@ fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argumen
             span.end = next.span().end;
             signed(cursor, sign == '-', next)?
         }
-        (Token::Text, _) => Value::Text,
+        (Token::Text, text) => Value::Text(unquoted(text)),
         (Token::Name, "true") => Value::Bool(true),
         (Token::Name, "false") => Value::Bool(false),
         (Token::Name, "undef") => Value::Undefined,
@@ -241,6 +250,27 @@ fn value(cursor: &mut Cursor<'_>, first: Lexeme, depth: usize) -> Result<Argumen
         value,
         span,
     })
+}
+
+/// The characters of a quoted text.
+fn unquoted(text: &str) -> String {
+    let inner = text.strip_prefix('"').unwrap_or(text);
+    let inner = inner.strip_suffix('"').unwrap_or(inner);
+    let mut all = String::with_capacity(inner.len());
+    let mut characters = inner.chars();
+    while let Some(c) = characters.next() {
+        match c {
+            '\\' => all.push(match characters.next() {
+                Some('n') => '\n',
+                Some('t') => '\t',
+                Some('r') => '\r',
+                Some(other) => other,
+                None => c,
+            }),
+            _ => all.push(c),
+        }
+    }
+    all
 }
 
 fn signed(cursor: &Cursor<'_>, negative: bool, lexeme: Lexeme) -> Result<Value, SpannedError> {

@@ -10,6 +10,7 @@
 //! | `region` | set operations on these |
 //! | `shapes` | solids |
 //! | `slices` | how many slices an extrusion has |
+//! | `text` | the figures of texts |
 //! | `twist` | extrusions that are made of slices |
 //! | `sweep` | extrusions and revolutions |
 //! | `matrix` | motions and scales |
@@ -28,6 +29,7 @@ mod shapes;
 mod slices;
 mod sweep;
 mod syntax;
+mod text;
 mod twist;
 
 use self::nodes::Evaluator;
@@ -42,7 +44,7 @@ const SIX_DIGITS: f64 = 1e-6;
 pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
     let mut cursor = Cursor::new(source, Dialect::Scad)?;
     let file = syntax::parse(&mut cursor)?;
-    let mut evaluator = Evaluator::new(&cursor, options.facets);
+    let mut evaluator = Evaluator::new(&cursor, options);
     let part = evaluator.solid(file)?;
     let Evaluator {
         builder,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use premio_kernel::number::rational::{Rational, from_decimal, to_f64};
 
-use super::super::FacetLimit;
+use super::super::ReadOptions;
 use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Lexeme};
 use super::super::notes::Notes;
@@ -19,6 +19,7 @@ use super::region::Region;
 use super::shapes;
 use super::sweep::{Raise, Spin, operation};
 use super::syntax::{ScadFile, ScadNode};
+use super::text;
 use crate::builder::{Builder, SolidId};
 use crate::construction::{
     AffineMap, ConstructionError, convex_hull, extent, mapped, minkowski_sum, section, shadow,
@@ -34,7 +35,7 @@ enum Geometry {
 }
 
 /// The supported nodes.
-const KNOWN: [&str; 22] = [
+const KNOWN: [&str; 23] = [
     "group",
     "union",
     "hull",
@@ -57,11 +58,13 @@ const KNOWN: [&str; 22] = [
     "projection",
     "resize",
     "fill",
+    "text",
 ];
 
 /// Evaluates the nodes of a file, children first.
 pub(super) struct Evaluator<'c, 'a> {
     cursor: &'c Cursor<'a>,
+    options: &'c ReadOptions,
     pub builder: Builder,
     pub notes: Notes,
     pub rule: FacetRule,
@@ -75,12 +78,13 @@ struct Children {
 }
 
 impl<'c, 'a> Evaluator<'c, 'a> {
-    pub fn new(cursor: &'c Cursor<'a>, facets: FacetLimit) -> Self {
+    pub fn new(cursor: &'c Cursor<'a>, options: &'c ReadOptions) -> Self {
         Self {
             cursor,
+            options,
             builder: Builder::new(),
             notes: Notes::of_digits(SIX_DIGITS),
-            rule: FacetRule::new(facets),
+            rule: FacetRule::new(options.facets),
         }
     }
 
@@ -200,6 +204,10 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 Ok(plane(
                     filled.map(|figure| Region::new(figure, arguments.span.clone())),
                 ))
+            }
+            "text" => {
+                let fonts = &self.options.fonts;
+                text::text(arguments, fonts, &mut self.notes).map(plane)
             }
             "projection" => self.projection(children, arguments),
             "resize" => self.resize(children, arguments),
@@ -508,7 +516,7 @@ fn constructed(
 fn unknown(name: &str, place: Lexeme) -> SpannedError {
     let reason = match name {
         "roof" => "it is not a regularised set operation or a rigid motion",
-        "import" | "surface" | "text" => "it needs another file",
+        "import" | "surface" => "it needs another file",
         "translate" | "rotate" | "mirror" | "scale" | "for" | "if" | "module" => {
             "this is not flattened: write the file with `openscad -o part.csg part.scad`"
         }

@@ -28,6 +28,8 @@ pub(crate) enum FigureExpression {
     Leaf(usize),
     /// An operation; a difference takes all later operands from the first.
     Combined(FigureOperation, Vec<FigureExpression>),
+    /// Points of an odd number of operands.
+    Parity(Vec<FigureExpression>),
 }
 
 impl FigureExpression {
@@ -35,6 +37,10 @@ impl FigureExpression {
     fn contains(&self, held: &[bool]) -> bool {
         match self {
             Self::Leaf(index) => held[*index],
+            Self::Parity(operands) => {
+                let containing = operands.iter().filter(|operand| operand.contains(held));
+                containing.count() % 2 == 1
+            }
             Self::Combined(op, operands) => {
                 let mut each = operands.iter().map(|operand| operand.contains(held));
                 match op {

@@ -3,7 +3,7 @@ pub mod builder;
 pub mod construction;
 #[cfg_attr(
     not(test),
-    expect(
+    allow(
         dead_code,
         unused_imports,
         reason = "the node `import` does not read drawings yet"

@@ -18,6 +18,7 @@ mod roots;
 mod scalar;
 mod set_operations;
 mod straightened;
+mod stroke;
 mod wrapping;
 
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
@@ -29,6 +30,7 @@ pub use outline::ContourCorner;
 pub(crate) use scalar::direction;
 pub(crate) use set_operations::FigureExpression;
 pub use set_operations::FigureOperation;
+pub(crate) use stroke::{Stroke, StrokeCap};
 pub(crate) use wrapping::HullElement;
 
 /// The largest number of edges of a figure.

@@ -67,7 +67,7 @@ impl Figure {
 }
 
 /// The unit normal away from the material at an end of an edge.
-fn normal(edge: &FigureEdge, at: &FigurePoint) -> FigurePoint {
+pub(super) fn normal(edge: &FigureEdge, at: &FigurePoint) -> FigurePoint {
     match &edge.arc {
         Some(arc) => {
             let radius = arc.signed_radius();
@@ -82,17 +82,17 @@ fn normal(edge: &FigureEdge, at: &FigurePoint) -> FigurePoint {
 }
 
 /// A point moved by a distance along the normal of an edge.
-fn shifted(edge: &FigureEdge, at: &FigurePoint, distance: &Rational) -> FigurePoint {
+pub(super) fn shifted(edge: &FigureEdge, at: &FigurePoint, distance: &Rational) -> FigurePoint {
     let n = normal(edge, at);
     [0, 1].map(|i| shortened(&(&at[i] + &n[i] * distance)))
 }
 
-fn corner(point: FigurePoint, arc: Option<FigureArc>) -> ContourCorner {
+pub(super) fn corner(point: FigurePoint, arc: Option<FigureArc>) -> ContourCorner {
     ContourCorner { point, arc }
 }
 
 /// A region of one contour, counterclockwise.
-fn region(corners: Vec<ContourCorner>) -> Result<Option<Figure>, FigureError> {
+pub(super) fn region(corners: Vec<ContourCorner>) -> Result<Option<Figure>, FigureError> {
     match Figure::from_contours(&[corners]) {
         Ok(figure) => Ok(Some(figure)),
         Err(FigureError::Empty) => Ok(None),
@@ -101,7 +101,7 @@ fn region(corners: Vec<ContourCorner>) -> Result<Option<Figure>, FigureError> {
 }
 
 /// The points beside an edge, away from the material.
-fn strip(edge: &FigureEdge, size: &Rational) -> Result<Option<Figure>, FigureError> {
+pub(super) fn strip(edge: &FigureEdge, size: &Rational) -> Result<Option<Figure>, FigureError> {
     let [s, e] = [&edge.start, &edge.end];
     let back = edge.reversed();
     let Some(arc) = &edge.arc else {
@@ -130,7 +130,7 @@ fn strip(edge: &FigureEdge, size: &Rational) -> Result<Option<Figure>, FigureErr
 
 /// What a corner adds between the strips of its edges; nothing where the outline does not turn
 /// towards the material.
-fn corner_piece(
+pub(super) fn corner_piece(
     edge: &FigureEdge,
     next: &FigureEdge,
     size: &Rational,
@@ -205,7 +205,7 @@ fn chords(
 }
 
 /// A point moved across a normal, in the direction of its edge.
-fn ahead(from: &FigurePoint, normal: &FigurePoint, by: &Rational) -> FigurePoint {
+pub(super) fn ahead(from: &FigurePoint, normal: &FigurePoint, by: &Rational) -> FigurePoint {
     let along = [-&normal[1], normal[0].clone()];
     [0, 1].map(|i| shortened(&(&from[i] + &along[i] * by)))
 }

@@ -123,6 +123,21 @@ fn circles_that_cross_follow_the_even_odd_rule() {
 }
 
 #[test]
+fn contours_that_touch_are_joined_where_there_are_arcs() {
+    // Two squares with a common edge, and a hole in one of them.
+    let other = polyline(&[[10, 0], [20, 0], [20, 10], [10, 10]], "0");
+    let text = polyline(SQUARE, "0") + &other + &circle([5, 5], 2);
+    let figure = region(&file("", &text));
+    assert_eq!(counts(&figure), [6, 2, 2]);
+    assert!(is_close(figure.area(), 200.0 - 4.0 * std::f64::consts::PI));
+    // The hole crosses the common edge.
+    let text = polyline(SQUARE, "0") + &other + &circle([10, 5], 2);
+    let figure = region(&file("", &text));
+    assert_eq!(counts(&figure), [6, 2, 2]);
+    assert!(is_close(figure.area(), 200.0 - 4.0 * std::f64::consts::PI));
+}
+
+#[test]
 fn a_block_is_inserted_with_scales_and_turned() {
     let blocks = block("B", &polyline(SQUARE, "0"));
     let figure = region(&file(&blocks, &insert("B", [2, 3], 90)));
@@ -201,7 +216,7 @@ fn errors_have_lines() {
     let comma = file("", &line([["0,5", "0"], ["1", "0"]], "0"));
     assert_eq!(error(&comma), "line 16: `0,5` is no number");
     let short = file("", "0\nLINE\n8\n0\n10\n1\n20\n2\n");
-    assert_eq!(error(&short), "line 13: `LINE` has too few coordinates");
+    assert_eq!(error(&short), "line 12: `LINE` has too few coordinates");
 }
 
 #[test]

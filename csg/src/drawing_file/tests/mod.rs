@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod dxf;
+mod svg;
 
 use super::*;
 use crate::figure::Figure;
@@ -21,8 +22,11 @@ fn with_options<T>(is_faceted: bool, read: impl FnOnce(&mut DrawingOptions<'_>) 
     let zero = || Rational::ZERO;
     read(&mut DrawingOptions {
         layer: None,
+        id: None,
         origin: [zero(), zero()],
         scale: Rational::ONE,
+        dpi: Rational::from(72),
+        is_centred: false,
         sides: &mut sides,
         fragments: &fragments,
     })

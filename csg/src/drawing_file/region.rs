@@ -1,9 +1,7 @@
 //! The region of a drawing.
 
 use super::{Drawing, DrawingShape};
-use crate::figure::{
-    ContourCorner, Figure, FigureEdge, FigureError, FigureExpression, FigureOperation, MAX_EDGES,
-};
+use crate::figure::{ContourCorner, Figure, FigureEdge, FigureError, FigureExpression, MAX_EDGES};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -22,13 +20,7 @@ pub(crate) fn figure(drawing: &Drawing) -> Result<Figure, FigureError> {
         contours: Vec::new(),
     };
     for group in overlapping(figures) {
-        let united = match &group[..] {
-            [single] => single.clone(),
-            _ => {
-                let group: Vec<&Figure> = group.iter().collect();
-                Figure::combined(FigureOperation::Union, &group)?
-            }
-        };
+        let united = Figure::united(group)?;
         let first = all.edges.len();
         all.contours
             .extend(united.contours.iter().map(|i| first + i));

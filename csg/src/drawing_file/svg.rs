@@ -153,18 +153,24 @@ impl<'d> Reader<'d, '_, '_, '_> {
         label.is_some() && label == self.layer()
     }
 
+    /// Notes whether an element is in the layer that is read, and whether it is read.
+    fn select(&self, element: &mut Waiting<'d>) {
+        let node = &element.node;
+        element.is_in_layer |= self.is_layer(node);
+        element.is_selected |= match (self.options.id, self.layer()) {
+            (Some(id), Some(_)) => element.is_in_layer && node.attribute("id") == Some(id),
+            (Some(id), None) => node.attribute("id") == Some(id),
+            (None, _) => element.is_in_layer,
+        };
+    }
+
     fn element(
         &mut self,
         mut element: Waiting<'d>,
         waiting: &mut Vec<Waiting<'d>>,
     ) -> Result<(), DrawingFileError> {
         let node = element.node;
-        element.is_in_layer |= self.is_layer(&node);
-        element.is_selected |= match (self.options.id, self.layer()) {
-            (Some(id), Some(_)) => element.is_in_layer && node.attribute("id") == Some(id),
-            (Some(id), None) => node.attribute("id") == Some(id),
-            (None, _) => element.is_in_layer,
-        };
+        self.select(&mut element);
         match name(&node) {
             "defs" => return Ok(()),
             "text" => {

@@ -109,6 +109,27 @@ impl Figure {
         let leaves = (0..figures.len()).map(FigureExpression::Leaf).collect();
         Self::evaluated(figures, &FigureExpression::Combined(op, leaves))
     }
+
+    /// The union of many figures. Neighbours in the list are united first, as every edge is
+    /// compared with every figure of an operation.
+    ///
+    /// # Errors
+    /// There are no figures, or too many edges, or edges run so close to each other that it is
+    /// unclear which of them are one.
+    pub(crate) fn united(mut figures: Vec<Self>) -> Result<Self, FigureError> {
+        const GROUP: usize = 8;
+        while figures.len() > 1 {
+            let groups = figures.chunks(GROUP).map(|group| match group {
+                [single] => Ok(single.clone()),
+                _ => {
+                    let group: Vec<&Self> = group.iter().collect();
+                    Self::combined(FigureOperation::Union, &group)
+                }
+            });
+            figures = groups.collect::<Result<_, _>>()?;
+        }
+        figures.pop().ok_or(FigureError::Empty)
+    }
 }
 
 /// A figure for tests whether it contains points.

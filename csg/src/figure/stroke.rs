@@ -3,8 +3,7 @@
 use super::chain::joined;
 use super::offset::{ahead, corner, corner_piece, normal, region, shifted, strip};
 use super::{
-    ArcTurn, Figure, FigureArc, FigureEdge, FigureError, FigureOperation, FigurePoint, OffsetJoin,
-    PlaneMap,
+    ArcTurn, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, OffsetJoin, PlaneMap,
 };
 use premio_kernel::number::rational::Rational;
 
@@ -40,25 +39,24 @@ impl Figure {
         let pairs = points.windows(2).filter(|ends| ends[0] != ends[1]);
         let edges = pairs.map(|ends| FigureEdge::line(ends[0].clone(), ends[1].clone()));
         let edges = without_closing(edges.collect());
-        let mut pieces = Vec::new();
         if let ([], Some(point)) = (&edges[..], points.first()) {
             return dot(point, stroke);
         }
-        for edge in &edges {
+        let mut pieces = Vec::new();
+        for (i, edge) in edges.iter().enumerate() {
             for side in [edge, &edge.reversed()] {
                 pieces.extend(strip(side, &stroke.half_width)?);
             }
+            let end = match edges.get(i + 1) {
+                Some(next) => join(edge, next, stroke)?,
+                None => cap(edge, stroke)?,
+            };
+            pieces.extend(end);
         }
-        for pair in edges.windows(2) {
-            pieces.extend(join(&pair[0], &pair[1], stroke)?);
+        if let Some(first) = edges.first() {
+            pieces.extend(cap(&first.reversed(), stroke)?);
         }
-        if let [first, .., last] | [first @ last] = &edges[..] {
-            for end in [last, &first.reversed()] {
-                pieces.extend(cap(end, stroke)?);
-            }
-        }
-        let pieces: Vec<&Self> = pieces.iter().collect();
-        Self::combined(FigureOperation::Union, &pieces)
+        Self::united(pieces)
     }
 }
 

@@ -14,9 +14,11 @@ const CURVE_STEPS: u32 = 20;
 /// The number of segments of a circle or an ellipse.
 const CIRCLE_STEPS: u32 = 40;
 
-/// The number of segments of an arc, by the angle between its ends.
+/// The number of segments of an arc, by the angle between its ends. A tenth of half a turn counts
+/// in full if rounding makes it less.
 fn arc_steps(sweep: f64) -> u32 {
-    (sweep.abs() * 10.0 / std::f64::consts::PI) as u32 + 4
+    let tenths = sweep.abs() * 10.0 / std::f64::consts::PI;
+    (tenths + 1024.0 * f64::EPSILON) as u32 + 4
 }
 
 /// The number of segments of a round cap or join of a stroke. OpenSCAD's library Clipper keeps them
@@ -315,50 +317,69 @@ fn circular(start: FigurePoint, arc: &PathArc) -> Option<FigureEdge> {
 }
 
 /// The segments of an arc of an ellipse. `None` if a number is not finite.
-///
-/// In the coordinates in which the ellipse is the unit circle, the arc is circular.
 fn elliptic(start: &FigurePoint, arc: &PathArc) -> Option<Vec<FigureEdge>> {
     let tilt = to_f64(&arc.tilt).to_radians();
     let (sin, cos) = tilt.sin_cos();
-    let mut radii = arc.radii.each_ref().map(|radius| to_f64(radius).abs());
-    let unit = |point: &FigurePoint, radii: [f64; 2]| {
+    let radii = arc.radii.each_ref().map(|radius| to_f64(radius).abs());
+    // In the coordinates in which the ellipse is the unit circle, the arc is circular.
+    let ends = [start, &arc.end].map(|point| {
         let [x, y] = point.each_ref().map(to_f64);
         [
             (cos * x + sin * y) / radii[0],
             (cos * y - sin * x) / radii[1],
         ]
-    };
-    let [p, q] = [start, &arc.end].map(|point| unit(point, radii));
-    let distance = (q[0] - p[0]).hypot(q[1] - p[1]);
-    let growth = (distance / 2.0).max(1.0);
-    radii = radii.map(|radius| radius * growth);
-    let [p, q] = [p, q].map(|point| point.map(|x| x / growth));
-    let distance = distance / growth;
-    let mut away = (1.0 / (distance * distance) - 0.25).max(0.0).sqrt();
-    if arc.is_sweeping == arc.is_large {
-        away = -away;
-    }
-    let centre = [
-        0.5 * (p[0] + q[0]) - away * (q[1] - p[1]),
-        0.5 * (p[1] + q[1]) + away * (q[0] - p[0]),
-    ];
-    let [from, to] = [p, q].map(|point| (point[1] - centre[1]).atan2(point[0] - centre[0]));
-    let full = std::f64::consts::TAU;
-    let sweep = match arc.is_sweeping {
-        true => (to - from).rem_euclid(full),
-        false => -(from - to).rem_euclid(full),
-    };
-    let [x, y] = [centre[0] * radii[0], centre[1] * radii[1]];
+    });
+    let unit = UnitArc::new(ends, arc);
+    let [x, y] = [0, 1].map(|i| unit.centre[i] * radii[i]);
     let ellipse = EllipticArc {
         centre: [cos * x - sin * y, sin * x + cos * y],
-        radii,
+        radii: radii.map(|radius| radius * unit.radius),
         tilt,
-        start: from,
-        sweep,
+        start: unit.start,
+        sweep: unit.sweep,
     };
-    let mut points = ellipse.points(arc_steps(sweep))?;
+    let mut points = ellipse.points(arc_steps(unit.sweep))?;
     let last = points.len() - 1;
     points[0] = start.clone();
     points[last] = arc.end.clone();
     Some(polyline(&points))
+}
+
+/// A circular arc of radius 1, or of half the distance of its ends if that is more.
+struct UnitArc {
+    centre: [f64; 2],
+    radius: f64,
+    /// The angle of the start.
+    start: f64,
+    /// The angle between the ends, negative if the arc runs clockwise.
+    sweep: f64,
+}
+
+impl UnitArc {
+    fn new([p, q]: [[f64; 2]; 2], arc: &PathArc) -> Self {
+        let [x, y] = [q[0] - p[0], q[1] - p[1]];
+        let distance = x.hypot(y);
+        let radius = (distance / 2.0).max(1.0);
+        let share = radius / distance;
+        let mut away = (share * share - 0.25).max(0.0).sqrt();
+        if arc.is_sweeping == arc.is_large {
+            away = -away;
+        }
+        let centre = [
+            0.5 * (p[0] + q[0]) - away * y,
+            0.5 * (p[1] + q[1]) + away * x,
+        ];
+        let [from, to] = [p, q].map(|end| (end[1] - centre[1]).atan2(end[0] - centre[0]));
+        let full = std::f64::consts::TAU;
+        let sweep = match arc.is_sweeping {
+            true => (to - from).rem_euclid(full),
+            false => -(from - to).rem_euclid(full),
+        };
+        Self {
+            centre,
+            radius,
+            start: from,
+            sweep,
+        }
+    }
 }

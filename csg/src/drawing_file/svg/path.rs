@@ -31,58 +31,41 @@ pub(super) fn add(
     Ok(())
 }
 
+/// The current point, and whether coordinates are relative to it.
+struct Frame {
+    at: FigurePoint,
+    is_absolute: bool,
+}
+
+impl Frame {
+    fn point(&self, x: f64, y: f64) -> Result<FigurePoint, DrawingFileError> {
+        let [x, y] = [decimal(x)?, decimal(y)?];
+        Ok(match self.is_absolute {
+            true => [x, y],
+            false => [x + &self.at[0], y + &self.at[1]],
+        })
+    }
+}
+
 fn add_segment(
     segment: PathSegment,
     control: &LastControl,
     outline: &mut Outline<'_, '_>,
 ) -> Result<LastControl, DrawingFileError> {
-    let at = outline.at().clone();
-    let is_absolute = segment.is_abs();
-    let point = |x: f64, y: f64| -> Result<FigurePoint, DrawingFileError> {
-        let [x, y] = [decimal(x)?, decimal(y)?];
-        Ok(match is_absolute {
-            true => [x, y],
-            false => [x + &at[0], y + &at[1]],
-        })
+    let frame = Frame {
+        at: outline.at().clone(),
+        is_absolute: segment.is_abs(),
     };
     match segment {
-        PathSegment::MoveTo { x, y, .. } => outline.move_to(point(x, y)?),
-        PathSegment::LineTo { x, y, .. } => outline.line_to(point(x, y)?),
+        PathSegment::MoveTo { x, y, .. } => outline.move_to(frame.point(x, y)?),
+        PathSegment::LineTo { x, y, .. } => outline.line_to(frame.point(x, y)?),
         PathSegment::HorizontalLineTo { x, .. } => {
-            let [x, _] = point(x, 0.0)?;
-            outline.line_to([x, at[1].clone()]);
+            let [x, _] = frame.point(x, 0.0)?;
+            outline.line_to([x, frame.at[1].clone()]);
         }
         PathSegment::VerticalLineTo { y, .. } => {
-            let [_, y] = point(0.0, y)?;
-            outline.line_to([at[0].clone(), y]);
-        }
-        PathSegment::CurveTo {
-            x1,
-            y1,
-            x2,
-            y2,
-            x,
-            y,
-            ..
-        } => {
-            return cubic([point(x1, y1)?, point(x2, y2)?, point(x, y)?], outline);
-        }
-        PathSegment::SmoothCurveTo { x2, y2, x, y, .. } => {
-            let first = match control {
-                LastControl::Cubic(last) => reflected(last, &at),
-                _ => at.clone(),
-            };
-            return cubic([first, point(x2, y2)?, point(x, y)?], outline);
-        }
-        PathSegment::Quadratic { x1, y1, x, y, .. } => {
-            return quadratic([point(x1, y1)?, point(x, y)?], outline);
-        }
-        PathSegment::SmoothQuadratic { x, y, .. } => {
-            let first = match control {
-                LastControl::Quadratic(last) => reflected(last, &at),
-                _ => at.clone(),
-            };
-            return quadratic([first, point(x, y)?], outline);
+            let [_, y] = frame.point(0.0, y)?;
+            outline.line_to([frame.at[0].clone(), y]);
         }
         PathSegment::EllipticalArc {
             rx,
@@ -93,18 +76,55 @@ fn add_segment(
             x,
             y,
             ..
-        } => {
-            outline.arc_to(&PathArc {
-                radii: [decimal(rx)?, decimal(ry)?],
-                tilt: decimal(x_axis_rotation)?,
-                is_large: large_arc,
-                is_sweeping: sweep,
-                end: point(x, y)?,
-            })?;
-        }
+        } => outline.arc_to(&PathArc {
+            radii: [decimal(rx)?, decimal(ry)?],
+            tilt: decimal(x_axis_rotation)?,
+            is_large: large_arc,
+            is_sweeping: sweep,
+            end: frame.point(x, y)?,
+        })?,
         PathSegment::ClosePath { .. } => outline.close(),
+        curve => return add_curve(curve, &frame, control, outline),
     }
     Ok(LastControl::None)
+}
+
+fn add_curve(
+    curve: PathSegment,
+    frame: &Frame,
+    control: &LastControl,
+    outline: &mut Outline<'_, '_>,
+) -> Result<LastControl, DrawingFileError> {
+    let [first, second, end] = match curve {
+        PathSegment::CurveTo {
+            x1,
+            y1,
+            x2,
+            y2,
+            x,
+            y,
+            ..
+        } => [(x1, y1), (x2, y2), (x, y)].map(|(x, y)| frame.point(x, y)),
+        PathSegment::SmoothCurveTo { x2, y2, x, y, .. } => {
+            let first = match control {
+                LastControl::Cubic(last) => reflected(last, &frame.at),
+                _ => frame.at.clone(),
+            };
+            [Ok(first), frame.point(x2, y2), frame.point(x, y)]
+        }
+        PathSegment::Quadratic { x1, y1, x, y, .. } => {
+            return quadratic([frame.point(x1, y1)?, frame.point(x, y)?], outline);
+        }
+        PathSegment::SmoothQuadratic { x, y, .. } => {
+            let first = match control {
+                LastControl::Quadratic(last) => reflected(last, &frame.at),
+                _ => frame.at.clone(),
+            };
+            return quadratic([first, frame.point(x, y)?], outline);
+        }
+        _ => return Ok(LastControl::None),
+    };
+    cubic([first?, second?, end?], outline)
 }
 
 fn cubic(

@@ -321,4 +321,12 @@ fn many_shapes_are_united_quickly() {
     let discs: String = (0..count).map(disc).collect();
     let figure = region(&discs);
     assert_eq!(figure.contours().count(), 60);
+    // A stroke along a spiral.
+    let point = |i: i32| {
+        let angle = 0.1 * f64::from(i);
+        format!("{:.3},{:.3} ", angle * angle.cos(), angle * angle.sin())
+    };
+    let points: String = (0..600).map(point).collect();
+    let spiral = region(&format!(r#"<polyline points="{points}"/>"#));
+    assert_eq!(spiral.contours().count(), 1);
 }

@@ -45,6 +45,7 @@ pub fn part(options: &DescriptionOptions, session: Session) -> Result<EvaluatedP
         smooth: false,
         resolution: options.resolution,
         exact: options.exact,
+        noise: None,
     };
     let digits = match options.unfiltered {
         true => Arithmetic::Extended,
@@ -167,8 +168,12 @@ fn evaluated(
     }
     let evaluate = started.elapsed().as_secs_f64();
     // A model has no other files.
-    if let Some(text) = expression.standalone_text() {
-        text.clone_into(&mut written.text);
+    if let Some(record) = expression.standalone_record() {
+        written = Written {
+            resolution: written.resolution,
+            exact: written.exact,
+            ..record.clone()
+        };
     }
     Ok(EvaluatedPart {
         name,
@@ -188,6 +193,7 @@ fn evaluation_options(written: &Written, digits: Arithmetic) -> EvaluationOption
             false => CoincidencePolicy::ByResolution,
         },
         digits,
+        noise: written.noise,
         ..EvaluationOptions::default()
     }
 }

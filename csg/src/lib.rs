@@ -1,14 +1,6 @@
 //! Descriptions of solids: primitives, the tree of set operations, the readers, and the writers.
 pub mod builder;
 pub mod construction;
-#[cfg_attr(
-    not(test),
-    allow(
-        dead_code,
-        unused_imports,
-        reason = "the node `import` does not read drawings yet"
-    )
-)]
 mod drawing_file;
 pub mod evaluate;
 pub mod figure;

@@ -34,7 +34,7 @@ fuzz_target!(|bytes: &[u8]| {
 
 /// The text without included files describes the same part.
 fn alone(source: &Program) {
-    let (Some(text), Ok(tree)) = (&source.standalone, source.builder.finish(source.part)) else {
+    let (Some(text), Ok(tree)) = (source.standalone.rewritten(), source.builder.finish(source.part)) else {
         return;
     };
     let options = ReadOptions::default();

@@ -272,6 +272,7 @@ impl Model {
                 true => CoincidencePolicy::Exact,
                 false => CoincidencePolicy::ByResolution,
             },
+            noise: record.noise,
             ..EvaluationOptions::default()
         };
         let expression = crate::Expression::described(program, record.clone(), name.clone());

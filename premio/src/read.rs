@@ -3,7 +3,8 @@
 use crate::files::{IncludedFiles, SystemFonts};
 use crate::{Error, Expression, Result};
 use premio_csg::lettering::Fonts;
-use premio_csg::reader::{self, Format, Includes, ReadOptions};
+use premio_csg::reader::{self, Format, Includes, ReadOptions, StandaloneText};
+use premio_csg::writer::write;
 use premio_predict::model::record::DescriptionRecord;
 use std::fs;
 use std::path::Path;
@@ -116,17 +117,31 @@ pub fn read_bytes(
 ) -> Result<Expression> {
     let program = reader::parse(name, bytes, format, options)?;
     let text = String::from_utf8_lossy(bytes).into_owned();
-    // A model has no other files.
-    let (text, read) = match program.standalone.clone() {
-        Some(standalone) => (standalone, Some(text)),
-        None => (text, None),
-    };
-    let record = DescriptionRecord {
+    let as_read = DescriptionRecord {
         language: format.ending().to_owned(),
-        text,
         part: options.part.clone(),
         facets: options.facets.recorded(),
         ..DescriptionRecord::default()
+    };
+    // A model has no other files.
+    let (record, read) = match &program.standalone {
+        StandaloneText::AsRead => (DescriptionRecord { text, ..as_read }, None),
+        StandaloneText::Rewritten(standalone) => {
+            let record = DescriptionRecord {
+                text: standalone.clone(),
+                ..as_read
+            };
+            (record, Some(text))
+        }
+        StandaloneText::Unavailable => {
+            let record = DescriptionRecord {
+                language: Format::Json.ending().to_owned(),
+                text: write(&program.builder, program.part, Format::Json)?,
+                noise: program.digits,
+                ..DescriptionRecord::default()
+            };
+            (record, Some(text))
+        }
     };
     Ok(Expression::of_text(program, record, name.to_owned(), read))
 }

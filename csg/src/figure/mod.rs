@@ -242,6 +242,18 @@ impl Figure {
         Ok(Self::of_contour(edges))
     }
 
+    /// The regular polygon in a circle about the origin, with a corner on the first axis.
+    ///
+    /// # Errors
+    /// It has no area.
+    pub(crate) fn regular_polygon(radius: &Rational, count: u32) -> Result<Self, FigureError> {
+        let corner = |i: u32| {
+            let degrees = Rational::from(360 * i) / Rational::from(count);
+            direction(&degrees).map(|x| x * radius)
+        };
+        Self::polygon(&[(0..count).map(corner).collect()])
+    }
+
     /// The image under a map.
     ///
     /// # Errors

@@ -66,6 +66,7 @@ fn dot(point: &FigurePoint, stroke: &Stroke) -> Result<Figure, FigureError> {
     let double = || width + width;
     let (figure, offset) = match stroke.join {
         OffsetJoin::Round => (Figure::disc(width)?, point.clone()),
+        OffsetJoin::Faceted(count) => (Figure::regular_polygon(width, count)?, point.clone()),
         OffsetJoin::Miter | OffsetJoin::Chamfer => (
             Figure::rectangle(&[double(), double()])?,
             [&point[0] - width, &point[1] - width],

@@ -153,7 +153,7 @@ pub struct ReadOptions {
     pub part: Option<String>,
     /// Other values for names that a `.padl` text sets.
     pub overrides: Vec<ValueOverride>,
-    /// The loader of the files that a `.padl` text includes.
+    /// The loader of the files that a `.padl` text includes, and a `.csg` text imports.
     pub includes: Includes,
     /// The fonts of texts.
     pub fonts: Fonts,
@@ -191,13 +191,33 @@ pub struct Program {
     pub digits: Option<f64>,
     /// The remarks for the author.
     pub notes: Vec<Note>,
-    /// A text that describes the same parts without included files and overrides; `None` if the
-    /// text that was read does.
-    pub standalone: Option<String>,
+    /// A text that describes the same parts without other files and overrides.
+    pub standalone: StandaloneText,
     /// The files that the text includes, in the order in which they were read.
     pub included: Vec<IncludePath>,
     /// The position of the part.
     place: PartPlace,
+}
+
+/// A text that describes the same parts as another one, without other files and overrides.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StandaloneText {
+    /// The text that was read.
+    AsRead,
+    /// Another text in the same language.
+    Rewritten(String),
+    /// There is none in the same language: the text imports files, or has fonts of the machine.
+    Unavailable,
+}
+
+impl StandaloneText {
+    /// The other text in the same language, if there is one.
+    pub fn rewritten(&self) -> Option<&str> {
+        match self {
+            Self::Rewritten(text) => Some(text),
+            Self::AsRead | Self::Unavailable => None,
+        }
+    }
 }
 
 /// The position of a part: its span, and the text if it is not the one that was read.
@@ -299,7 +319,7 @@ fn parse_bytes(
     }
     match format {
         Format::Padl => padl::read(name, source, options),
-        Format::Csg => scad::read(source, options),
+        Format::Csg => scad::read(name, source, options),
         Format::Json => json::read(source),
         Format::Asc => brlcad::read(source, options),
         Format::Pov => pov::read(source, options),

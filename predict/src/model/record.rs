@@ -51,6 +51,10 @@ pub struct DescriptionRecord {
     /// Whether only proven coincidences count.
     #[serde(default)]
     pub exact: bool,
+    /// The relative noise of the coordinates, where the text does not show it: it was written in
+    /// place of one that imports files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<f64>,
 }
 
 /// The head of a model.

@@ -54,7 +54,7 @@ impl Expression {
         }
     }
 
-    /// The text of the description that the expression was read from, without `INCLUDE` and with the
+    /// The text of the description that the expression was read from, without other files and with the
     /// values that overrode its own; `None` if the text that was read is that.
     ///
     /// # Examples
@@ -69,8 +69,24 @@ impl Expression {
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn standalone_text(&self) -> Option<&str> {
+        self.standalone_record().map(|record| &*record.text)
+    }
+
+    /// The description as a model carries it, in place of the text that was read; `None` if the text
+    /// that was read is that. A text that imports files is replaced by one in JSON.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let part = premio::read_text("P = SPH(R=1)", Format::Padl)?;
+    /// assert!(part.standalone_record().is_none());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn standalone_record(&self) -> Option<&DescriptionRecord> {
         match self.0.as_deref() {
-            Ok(Node::Described(d)) if d.read.is_some() => Some(&d.record.text),
+            Ok(Node::Described(d)) if d.read.is_some() => Some(&d.record),
             _ => None,
         }
     }

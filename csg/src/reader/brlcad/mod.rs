@@ -21,7 +21,7 @@ use super::frame::Vector;
 use super::notes::{Notes, Remarks};
 use super::number::literal;
 use super::rigid_fit::F64_DIGITS;
-use super::{PartPlace, Program, ReadOptions};
+use super::{PartPlace, Program, ReadOptions, StandaloneText};
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::LineColumn;
@@ -52,7 +52,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         part,
         digits,
         notes,
-        standalone: None,
+        standalone: StandaloneText::AsRead,
         included: Vec::new(),
         place: PartPlace::new(database.objects[top].name.span.clone()),
     })

@@ -12,7 +12,7 @@ use self::value::{Content, Document, Member, Value, ValueId, parse};
 use super::error::SpannedError;
 use super::number::{bad_length, literal};
 use super::spanned::Spanned;
-use super::{PartPlace, Program};
+use super::{PartPlace, Program, StandaloneText};
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{self, Transform};
@@ -33,7 +33,7 @@ pub(super) fn read(source: &str) -> Result<Program, SpannedError> {
         part,
         digits: None,
         notes: Vec::new(),
-        standalone: None,
+        standalone: StandaloneText::AsRead,
         included: Vec::new(),
         place: PartPlace::new(span),
     })

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::super::error::SpannedError;
 use super::super::spanned::Spanned;
-use super::super::{IncludePath, PartPlace, Program, ReadOptions};
+use super::super::{IncludePath, PartPlace, Program, ReadOptions, StandaloneText};
 use super::expression::Value;
 use super::machine::{Activity, Machine};
 use super::scope::{Definition, Meaning, Scope};
@@ -139,7 +139,7 @@ impl<'a> Session<'a> {
     }
 
     /// The text without included files and overrides, if there are any.
-    fn standalone(&self) -> Option<String> {
+    fn standalone(&self) -> StandaloneText {
         let text = |piece: &'_ TextPiece| match piece {
             TextPiece::Span(span) => {
                 let text = self.sources.text(span.clone());
@@ -147,8 +147,10 @@ impl<'a> Session<'a> {
             }
             TextPiece::Text(text) => text.clone(),
         };
-        let is_needed = !self.pieces.is_empty();
-        is_needed.then(|| self.pieces.iter().map(text).collect())
+        match self.pieces.is_empty() {
+            true => StandaloneText::AsRead,
+            false => StandaloneText::Rewritten(self.pieces.iter().map(text).collect()),
+        }
     }
 
     /// The part that was read. `end` is the end of the text.

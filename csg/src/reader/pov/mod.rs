@@ -20,7 +20,7 @@ use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::notes::{Notes, Remarks};
 use super::spanned::Spanned;
-use super::{PartPlace, Program, ReadOptions};
+use super::{PartPlace, Program, ReadOptions, StandaloneText};
 use crate::builder::{Builder, SolidId};
 use crate::tree::Operation;
 use premio_text::LineColumn;
@@ -52,7 +52,7 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         part,
         digits,
         notes,
-        standalone: None,
+        standalone: StandaloneText::AsRead,
         included: Vec::new(),
         place: PartPlace::new(span),
     })

@@ -8,7 +8,7 @@ use super::super::error::SpannedError;
 use super::arguments::{Argument, Arguments, Value};
 use super::facets::FacetRule;
 use super::measures::{half, length, radius};
-use crate::figure::{Figure, FigureError, FigurePoint, PlaneMap, direction};
+use crate::figure::{Figure, FigureError, FigurePoint, PlaneMap};
 
 /// The error of a figure that is not exact.
 pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedError {
@@ -45,18 +45,9 @@ fn circle(arguments: &mut Arguments, rule: &mut FacetRule) -> Result<Made, Spann
         return arguments.require("r").map(|_| Err(FigureError::Empty));
     };
     Ok(match rule.sides(arguments, &radius)? {
-        Some(count) => regular_polygon(&radius, count),
+        Some(count) => Figure::regular_polygon(&radius, count),
         None => Figure::disc(&radius),
     })
-}
-
-/// The polygon that OpenSCAD makes of a circle, with a corner on the first axis.
-pub(super) fn regular_polygon(radius: &Rational, count: u32) -> Made {
-    let corner = |i: u32| {
-        let degrees = Rational::from(360 * i) / Rational::from(count);
-        direction(&degrees).map(|x| x * radius)
-    };
-    Figure::polygon(&[(0..count).map(corner).collect()])
 }
 
 fn square(arguments: &mut Arguments) -> Result<Made, SpannedError> {

@@ -7,6 +7,7 @@
 //! | `facets` | which circles are meant as polygons |
 //! | `measures` | lengths and radii |
 //! | `figures` | plane figures |
+//! | `import` | the contents of other files |
 //! | `region` | set operations on these |
 //! | `shapes` | solids |
 //! | `slices` | how many slices an extrusion has |
@@ -20,6 +21,7 @@
 mod arguments;
 mod facets;
 mod figures;
+mod import;
 mod matrix;
 mod measures;
 mod nodes;
@@ -36,20 +38,26 @@ use self::nodes::Evaluator;
 use super::error::SpannedError;
 use super::lexer::{Cursor, Dialect};
 use super::notes::Remarks;
-use super::{PartPlace, Program, ReadOptions};
+use super::{PartPlace, Program, ReadOptions, StandaloneText};
 
 /// The relative rounding of the six digits that OpenSCAD writes.
 const SIX_DIGITS: f64 = 1e-6;
 
-pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, SpannedError> {
+pub(super) fn read(
+    name: &str,
+    source: &str,
+    options: &ReadOptions,
+) -> Result<Program, SpannedError> {
     let mut cursor = Cursor::new(source, Dialect::Scad)?;
     let file = syntax::parse(&mut cursor)?;
-    let mut evaluator = Evaluator::new(&cursor, options);
+    let mut evaluator = Evaluator::new(&cursor, name, options);
     let part = evaluator.solid(file)?;
     let Evaluator {
         builder,
         mut notes,
         rule,
+        files,
+        has_other_fonts,
         ..
     } = evaluator;
     rule.remark(&mut notes);
@@ -59,8 +67,11 @@ pub(super) fn read(source: &str, options: &ReadOptions) -> Result<Program, Spann
         part,
         digits,
         notes,
-        standalone: None,
-        included: Vec::new(),
+        standalone: match has_other_fonts || !files.paths.is_empty() {
+            true => StandaloneText::Unavailable,
+            false => StandaloneText::AsRead,
+        },
+        included: files.paths,
         place: PartPlace::new(0..source.len()),
     })
 }

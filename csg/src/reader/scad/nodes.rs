@@ -12,6 +12,7 @@ use super::SIX_DIGITS;
 use super::arguments::{Argument, Arguments, Value};
 use super::facets::FacetRule;
 use super::figures::{self, bad_figure};
+use super::import::{self, DrawingFormat, ImportedFiles};
 use super::matrix::Matrix;
 use super::measures::Shape;
 use super::refusal::construction_error;
@@ -35,7 +36,7 @@ enum Geometry {
 }
 
 /// The supported nodes.
-const KNOWN: [&str; 23] = [
+const KNOWN: [&str; 24] = [
     "group",
     "union",
     "hull",
@@ -59,6 +60,7 @@ const KNOWN: [&str; 23] = [
     "resize",
     "fill",
     "text",
+    "import",
 ];
 
 /// Evaluates the nodes of a file, children first.
@@ -68,6 +70,10 @@ pub(super) struct Evaluator<'c, 'a> {
     pub builder: Builder,
     pub notes: Notes,
     pub rule: FacetRule,
+    /// The files that were imported.
+    pub files: ImportedFiles<'c>,
+    /// Whether a text has a font that is not embedded.
+    pub has_other_fonts: bool,
 }
 
 /// The children of a node.
@@ -78,13 +84,15 @@ struct Children {
 }
 
 impl<'c, 'a> Evaluator<'c, 'a> {
-    pub fn new(cursor: &'c Cursor<'a>, options: &'c ReadOptions) -> Self {
+    pub fn new(cursor: &'c Cursor<'a>, name: &'c str, options: &'c ReadOptions) -> Self {
         Self {
             cursor,
             options,
             builder: Builder::new(),
             notes: Notes::of_digits(SIX_DIGITS),
             rule: FacetRule::new(options.facets),
+            files: ImportedFiles::new(name, &options.includes),
+            has_other_fonts: false,
         }
     }
 
@@ -207,12 +215,28 @@ impl<'c, 'a> Evaluator<'c, 'a> {
             }
             "text" => {
                 let fonts = &self.options.fonts;
+                self.has_other_fonts |= !text::has_embedded_font(arguments)?;
                 text::text(arguments, fonts, &mut self.notes).map(plane)
             }
+            "import" => self.import(arguments),
             "projection" => self.projection(children, arguments),
             "resize" => self.resize(children, arguments),
             _ => Err(unknown(name, node.name)),
         }
+    }
+
+    fn import(&mut self, arguments: &mut Arguments) -> Result<Geometry, SpannedError> {
+        arguments.bind(&[
+            "file", "layer", "id", "origin", "scale", "center", "dpi", "width", "height",
+        ])?;
+        let place = arguments.require("file")?.clone();
+        let file = arguments.words("file")?;
+        let Some(format) = DrawingFormat::of(file) else {
+            return Err(place.wrong("a file with the ending `dxf` or `svg`"));
+        };
+        let bytes = self.files.bytes(file, &place)?;
+        let region = import::drawing(format, &bytes, arguments, &mut self.rule, &mut self.notes);
+        region.map(plane)
     }
 
     fn placed(&mut self, shape: Shape) -> Geometry {
@@ -516,7 +540,7 @@ fn constructed(
 fn unknown(name: &str, place: Lexeme) -> SpannedError {
     let reason = match name {
         "roof" => "it is not a regularised set operation or a rigid motion",
-        "import" | "surface" => "it needs another file",
+        "surface" => "it needs another file",
         "translate" | "rotate" | "mirror" | "scale" | "for" | "if" | "module" => {
             "this is not flattened: write the file with `openscad -o part.csg part.scad`"
         }

@@ -8,9 +8,9 @@ use super::super::error::SpannedError;
 use super::super::notes::Notes;
 use super::arguments::{Argument, Arguments};
 use super::facets::FacetRule;
-use super::figures::{bad_figure, index, regular_polygon};
+use super::figures::{bad_figure, index};
 use super::measures::{MovedPrimitive, Shape, checked, half, length, radius};
-use crate::figure::direction;
+use crate::figure::{Figure, direction};
 use crate::polyhedron::{Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
@@ -115,7 +115,8 @@ fn faceted(
     // A pyramid on its apex is one that is turned over.
     let is_turned = base.is_zero();
     let [wide, narrow] = if is_turned { [top, base] } else { [base, top] };
-    let figure = regular_polygon(wide, count).map_err(|e| bad_figure(&e, &arguments.span))?;
+    let figure =
+        Figure::regular_polygon(wide, count).map_err(|e| bad_figure(&e, &arguments.span))?;
     let prism = Primitive::scaled_prism(figure, height.clone(), narrow / wide);
     let prism = checked(prism, &arguments.span)?;
     if !is_turned {

@@ -56,6 +56,12 @@ pub(super) fn text(
     Region::combined(FigureOperation::Union, regions)
 }
 
+/// Whether the font of a text is an embedded one.
+pub(super) fn has_embedded_font(arguments: &Arguments) -> Result<bool, SpannedError> {
+    let name = FontName::parse(arguments.words("font")?);
+    Ok(Fonts::default().find(&name).is_some())
+}
+
 fn style(arguments: &Arguments) -> Result<TextStyle<'_>, SpannedError> {
     let number = |name: &str, default: i32| match arguments.find(name) {
         Some(argument) => Ok(argument.number()?.clone()),

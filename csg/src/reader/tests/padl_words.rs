@@ -266,8 +266,8 @@ fn included_files_are_statements() {
     assert_eq!(tree_of(&program), padl("P = SPH(R=10)"));
     let names: Vec<&str> = program.included.iter().map(|file| &*file.name).collect();
     assert_eq!(names, ["lib/a.padl", "lib/b.padl"]);
-    let standalone = program.standalone.unwrap();
-    assert_eq!(padl(&standalone), padl("P = SPH(R=10)"));
+    let standalone = program.standalone.rewritten().unwrap();
+    assert_eq!(padl(standalone), padl("P = SPH(R=10)"));
     assert_snapshot!(standalone, @r#"
 X = 1
 B = 3 # three
@@ -285,7 +285,8 @@ P = SPH(R=A+B+X)
         padl("P = SPH(R=1)"),
         tree_of(&with_files("P = SPH(R=1)", &[]).unwrap())
     );
-    assert_eq!(with_files("P = SPH(R=1)", &[]).unwrap().standalone, None);
+    let alone = with_files("P = SPH(R=1)", &[]).unwrap().standalone;
+    assert_eq!(alone, StandaloneText::AsRead);
 }
 
 #[test]
@@ -300,8 +301,8 @@ fn values_are_overridden() {
         expected("10", "10/3")
     );
     let program = with(&[("W", "7 # wide"), ("L", "1/3")]);
-    let standalone = program.standalone.clone().unwrap();
-    assert_eq!(padl(&standalone), tree_of(&program));
+    let standalone = program.standalone.rewritten().unwrap();
+    assert_eq!(padl(standalone), tree_of(&program));
     assert_snapshot!(standalone, @r#"
 L = (1/3) # length
 W = (7 # wide

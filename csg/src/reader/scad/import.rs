@@ -1,0 +1,160 @@
+//! `import`: drawings of other programs.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use premio_kernel::number::rational::Rational;
+
+use super::super::error::SpannedError;
+use super::super::includes::{IncludePath, Includes};
+use super::super::notes::Notes;
+use super::arguments::{Argument, Arguments};
+use super::facets::{FacetRule, fragments};
+use super::figures::bad_figure;
+use super::region::Region;
+use crate::drawing_file::{self, Drawing, DrawingFileError, DrawingOptions};
+use crate::figure::FigureError;
+
+/// The files that a text imports.
+pub(super) struct ImportedFiles<'a> {
+    /// The name of the text.
+    name: &'a str,
+    includes: &'a Includes,
+    /// Their bytes, by their identity.
+    loaded: BTreeMap<String, Arc<[u8]>>,
+    /// Them, in the order in which they were read.
+    pub paths: Vec<IncludePath>,
+}
+
+impl<'a> ImportedFiles<'a> {
+    pub fn new(name: &'a str, includes: &'a Includes) -> Self {
+        Self {
+            name,
+            includes,
+            loaded: BTreeMap::new(),
+            paths: Vec::new(),
+        }
+    }
+
+    /// The bytes of the file that an argument names, relative to the folder of the text.
+    pub fn bytes(&mut self, file: &str, place: &Argument) -> Result<Arc<[u8]>, SpannedError> {
+        let wrong = |found: String| {
+            SpannedError::input(place.span.clone(), found, "a file that can be imported")
+        };
+        let Some(loader) = self.includes.loader() else {
+            return Err(wrong("a file, where files cannot be read".to_owned()));
+        };
+        let failed = |error| wrong(format!("{}: {error}", premio_text::escape::quote(file)));
+        let path = loader.find(Some(self.name), file).map_err(failed)?;
+        if let Some(known) = self.loaded.get(&path.identity) {
+            return Ok(Arc::clone(known));
+        }
+        let bytes: Arc<[u8]> = loader.load(&path).map_err(failed)?.into();
+        self.loaded
+            .insert(path.identity.clone(), Arc::clone(&bytes));
+        self.paths.push(path);
+        Ok(bytes)
+    }
+}
+
+/// A format of drawings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum DrawingFormat {
+    Dxf,
+    Svg,
+}
+
+impl DrawingFormat {
+    /// The format of a file, by its ending.
+    pub fn of(file: &str) -> Option<Self> {
+        let ending = Path::new(file).extension()?.to_str()?;
+        match ending.to_ascii_lowercase().as_str() {
+            "dxf" => Some(Self::Dxf),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
+}
+
+/// The region of a drawing; `None` if it is empty.
+pub(super) fn drawing(
+    format: DrawingFormat,
+    bytes: &[u8],
+    arguments: &Arguments,
+    rule: &mut FacetRule,
+    notes: &mut Notes,
+) -> Result<Option<Region>, SpannedError> {
+    let span = arguments.span.clone();
+    let drawing = contents(format, bytes, arguments, rule)?.map_err(|error| {
+        SpannedError::input(
+            span.clone(),
+            error.to_string(),
+            "a drawing that can be read",
+        )
+    })?;
+    remark(&drawing, arguments, notes);
+    match drawing_file::figure(&drawing) {
+        Ok(figure) => Ok(Some(Region::new(figure, span))),
+        Err(FigureError::Empty) => Ok(None),
+        Err(error) => Err(bad_figure(&error, &span)),
+    }
+}
+
+/// The contents of a file, as the arguments want them.
+fn contents(
+    format: DrawingFormat,
+    bytes: &[u8],
+    arguments: &Arguments,
+    rule: &mut FacetRule,
+) -> Result<Result<Drawing, DrawingFileError>, SpannedError> {
+    let number = |name: &str, default: Rational| match arguments.find(name) {
+        Some(argument) => Ok(argument.number()?.clone()),
+        None => Ok(default),
+    };
+    // `$fn`, `$fa` and `$fs` are numbers, as this shows for all radii.
+    rule.sides(arguments, &Rational::ONE)?;
+    let mut sides = |radius: &Rational| rule.sides(arguments, radius).ok().flatten();
+    let count = |radius: f64| fragments(arguments, radius).map_or(0, |count| count as u32);
+    let name = |name: &str| {
+        let text = arguments.words(name)?;
+        Ok::<_, SpannedError>((!text.is_empty()).then_some(text))
+    };
+    let mut options = DrawingOptions {
+        layer: name("layer")?,
+        id: name("id")?,
+        origin: origin(arguments)?,
+        scale: number("scale", Rational::ONE)?,
+        dpi: number("dpi", Rational::from(72))?,
+        is_centred: arguments.flag("center")?,
+        sides: &mut sides,
+        fragments: &count,
+    };
+    Ok(match format {
+        DrawingFormat::Dxf => drawing_file::read_dxf(bytes, &mut options),
+        DrawingFormat::Svg => drawing_file::read_svg(bytes, &mut options),
+    })
+}
+
+fn origin(arguments: &Arguments) -> Result<[Rational; 2], SpannedError> {
+    let Some(argument) = arguments.find("origin") else {
+        return Ok([Rational::ZERO, Rational::ZERO]);
+    };
+    let [x, y] = argument.list("a point: a list of two numbers")?;
+    Ok([x.number()?.clone(), y.number()?.clone()])
+}
+
+/// Says what was not taken as it is.
+fn remark(drawing: &Drawing, arguments: &Arguments, notes: &mut Notes) {
+    let kinds = [
+        (
+            drawing.approximated,
+            "curves are no circular arcs, and were cut into segments",
+        ),
+        (drawing.completed, "open paths were closed by a segment"),
+        (drawing.passed_over, "entities have no effect"),
+    ];
+    for (count, what) in kinds.into_iter().filter(|(count, _)| *count > 0) {
+        notes.add(format!("{count} {what}"), arguments.span.clone());
+    }
+}

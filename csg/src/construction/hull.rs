@@ -151,7 +151,7 @@ fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, HullEl
             };
             let is_over = *up < Rational::ZERO;
             let elements = figure.hull_elements();
-            let elements = elements.iter().map(|e| e.placed(&place, is_over));
+            let elements = elements.iter().map(|e| e.placed(place, is_over));
             let discs = elements.flat_map(|e| [(z.clone(), e.clone()), (high.clone(), e)]);
             Some(discs.collect())
         }

@@ -1,47 +1,15 @@
 //! The convex hull of points, discs and arcs: segments along common tangents, and arcs.
 
 use super::chain::joined;
+use super::hull_elements::{Disc, HullElement, square};
+use super::near_points::NearPoints;
 use super::roots::{root, shortened};
 use super::scalar::{FilteredPoint, orientation};
-use super::wrapping::{HullElement, wrapped};
+use super::wrapping::wrapped;
 use super::{ArcTurn, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, MAX_EDGES};
 use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
-
-/// A disc, or a point if its radius is zero.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Disc {
-    /// The centre.
-    pub centre: FigurePoint,
-    /// The radius.
-    pub radius: Rational,
-}
-
-impl Disc {
-    /// A point.
-    pub fn point(centre: FigurePoint) -> Self {
-        let radius = Rational::ZERO;
-        Self { centre, radius }
-    }
-
-    /// Whether it is a point at this place.
-    fn is_at(&self, point: &FigurePoint) -> bool {
-        self.radius.is_zero() && self.centre == *point
-    }
-
-    /// Whether it contains another one.
-    fn contains(&self, other: &Self) -> bool {
-        let more = &self.radius - &other.radius;
-        more >= Rational::ZERO && square(self, other) <= &more * &more
-    }
-}
-
-/// The square of the distance between two centres.
-fn square(a: &Disc, b: &Disc) -> Rational {
-    let [x, y] = [0, 1].map(|i| &b.centre[i] - &a.centre[i]);
-    &x * &x + &y * &y
-}
 
 impl Figure {
     /// The convex hull of some figures.
@@ -158,7 +126,7 @@ impl Figure {
             let points = elements.iter().map(HullElement::disc);
             return hull_of_points(points);
         }
-        let elements = undominated(elements);
+        let elements = undominated(&merged(elements));
         if let [HullElement::Disc(disc)] = &elements[..] {
             let figure = Self::disc(&disc.radius)?;
             let map = super::PlaneMap {
@@ -245,6 +213,24 @@ fn hull_of_points<'a>(points: impl Iterator<Item = &'a Disc>) -> Result<Figure, 
     let upper = half(&mut points.iter().rev());
     let corners = lower.into_iter().chain(upper).map(|point| point.exact);
     Figure::polygon(&[corners.collect()])
+}
+
+/// The elements with their points merged that nearly coincide.
+fn merged(elements: &[HullElement]) -> Vec<HullElement> {
+    let size = elements.iter().map(HullElement::reach).fold(0.0, f64::max);
+    let mut points = NearPoints::new(size);
+    let merged = elements
+        .iter()
+        .map(|e| e.with_points(|p| points.first_at(p)));
+    // An arc as short as the resolution is its end.
+    let has_length = |e: &HullElement| match e {
+        HullElement::Disc(_) => true,
+        HullElement::Arc {
+            ends: [first, last],
+            ..
+        } => first != last,
+    };
+    merged.filter(has_length).collect()
 }
 
 /// The elements that no disc contains, each of them once.

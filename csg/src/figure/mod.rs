@@ -9,7 +9,9 @@ mod carrier;
 mod chain;
 mod convex_hull;
 mod error;
+mod hull_elements;
 mod minkowski;
+mod near_points;
 mod nonzero;
 mod offset;
 mod outline;
@@ -23,15 +25,15 @@ mod wrapping;
 
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
-pub use convex_hull::Disc;
 pub use error::FigureError;
+pub use hull_elements::Disc;
+pub(crate) use hull_elements::HullElement;
 pub use offset::OffsetJoin;
 pub use outline::ContourCorner;
 pub(crate) use scalar::direction;
 pub(crate) use set_operations::FigureExpression;
 pub use set_operations::FigureOperation;
 pub(crate) use stroke::{Stroke, StrokeCap};
-pub(crate) use wrapping::HullElement;
 
 /// The largest number of edges of a figure.
 pub const MAX_EDGES: usize = 100_000;

@@ -5,51 +5,10 @@
 //! line is among the arc's; before and after that it touches the ends of the arc, which are points.
 
 use super::FigurePoint;
-use super::convex_hull::Disc;
+use super::hull_elements::{Disc, HullElement, square};
+use premio_kernel::number::predicates::RELATIVE_RESOLUTION;
 use premio_kernel::number::rational::{Rational, to_f64};
 use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// An element of which a hull is made.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum HullElement {
-    /// A whole disc, or a point if its radius is zero.
-    Disc(Disc),
-    /// An arc that bulges, counterclockwise from an end to another one.
-    Arc {
-        /// The disc of its circle.
-        disc: Disc,
-        /// Its ends.
-        ends: [FigurePoint; 2],
-    },
-}
-
-impl HullElement {
-    /// The disc of its circle.
-    pub fn disc(&self) -> &Disc {
-        match self {
-            Self::Disc(disc) | Self::Arc { disc, .. } => disc,
-        }
-    }
-
-    /// The image under a motion of the plane, which may turn it over.
-    pub fn placed(&self, place: impl Fn(&FigurePoint) -> FigurePoint, is_over: bool) -> Self {
-        let disc = self.disc();
-        let disc = Disc {
-            centre: place(&disc.centre),
-            radius: disc.radius.clone(),
-        };
-        match self {
-            Self::Disc(_) => Self::Disc(disc),
-            Self::Arc { ends, .. } => {
-                let mut ends = ends.each_ref().map(place);
-                if is_over {
-                    ends.reverse();
-                }
-                Self::Arc { disc, ends }
-            }
-        }
-    }
-}
 
 /// An element with what f64 needs.
 struct Shape<'a> {
@@ -121,8 +80,9 @@ impl<'a> Shape<'a> {
         is_point && arc.ends.is_some_and(|ends| ends[end] == self.disc.centre)
     }
 
-    /// The common tangent to another element that has both on its left.
-    fn tangent(&self, other: &Self) -> Option<Heading> {
+    /// The common tangent to another element that has both on its left. A point within `touching` of
+    /// a circle, and a circle that touches another one from the inside, have none.
+    fn tangent(&self, other: &Self, touching: f64) -> Option<Heading> {
         let at_end = |arc: &Self, by: usize| {
             let [first, turned] = arc.normals?;
             let angle = first + turned * by as f64 + FRAC_PI_2;
@@ -144,7 +104,7 @@ impl<'a> Shape<'a> {
         if along < SHORT * square {
             along = to_f64(&tangent_square(self.disc, other.disc));
         }
-        if along <= 0.0 {
+        if along <= 2.0 * touching * self.radius.max(other.radius) {
             return None;
         }
         let along = along.sqrt();
@@ -157,9 +117,8 @@ impl<'a> Shape<'a> {
 
 /// The square of the length of two discs' outer tangent.
 fn tangent_square(a: &Disc, b: &Disc) -> Rational {
-    let [x, y] = [0, 1].map(|i| &b.centre[i] - &a.centre[i]);
     let less = &a.radius - &b.radius;
-    &x * &x + &y * &y - &less * &less
+    square(a, b) - &less * &less
 }
 
 /// The order in which the boundary of the hull passes the elements, counterclockwise. An element may
@@ -171,9 +130,10 @@ pub(super) fn wrapped(elements: &[HullElement]) -> Vec<usize> {
     };
     let mut order = vec![start];
     let mut heading = 0.0;
+    let touching = touching(&shapes);
     for _ in 0..4 * shapes.len() {
         let at = order[order.len() - 1];
-        let Some((next, angle)) = onwards(&shapes, at, heading) else {
+        let Some((next, angle)) = onwards(&shapes, at, heading, touching) else {
             break;
         };
         heading = angle;
@@ -186,6 +146,15 @@ pub(super) fn wrapped(elements: &[HullElement]) -> Vec<usize> {
     Vec::new()
 }
 
+/// The distance within which elements touch.
+fn touching(shapes: &[Shape<'_>]) -> f64 {
+    let reach = |shape: &Shape<'_>| {
+        let [x, y] = shape.centre.map(f64::abs);
+        x.max(y) + shape.radius
+    };
+    RELATIVE_RESOLUTION * shapes.iter().map(reach).fold(0.0, f64::max)
+}
+
 /// The element with the lowest point, of several the one farthest to the right.
 fn first(shapes: &[Shape<'_>]) -> Option<usize> {
     let low = shapes.iter().enumerate();
@@ -195,11 +164,11 @@ fn first(shapes: &[Shape<'_>]) -> Option<usize> {
 }
 
 /// The element that the supporting line meets next, and its direction then.
-fn onwards(shapes: &[Shape<'_>], at: usize, heading: f64) -> Option<(usize, f64)> {
+fn onwards(shapes: &[Shape<'_>], at: usize, heading: f64, touching: f64) -> Option<(usize, f64)> {
     let same = ROUNDINGS * f64::EPSILON;
     let others = (0..shapes.len()).filter(|&j| j != at);
     let tangents = others.filter_map(|j| {
-        let tangent = shapes[at].tangent(&shapes[j])?;
+        let tangent = shapes[at].tangent(&shapes[j], touching)?;
         let by = (tangent.angle - heading).rem_euclid(TAU);
         // A tangent in the direction of the line differs from it by rounding.
         let by = if by > TAU - same { 0.0 } else { by };

@@ -5,6 +5,7 @@ mod drawing_file;
 pub mod evaluate;
 pub mod figure;
 pub mod lettering;
+pub mod mesh_file;
 pub mod object_model;
 pub mod polyhedron;
 pub mod primitive;

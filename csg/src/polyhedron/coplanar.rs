@@ -30,15 +30,15 @@ pub(super) fn united(faces: Vec<PolyhedronFace>, points: &[FilteredPoint]) -> Ve
 }
 
 /// Disjoint sets of faces.
-struct Groups(Vec<usize>);
+pub(super) struct Groups(Vec<usize>);
 
 impl Groups {
-    fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
     /// The first face of a face's group.
-    fn root(&mut self, mut face: usize) -> usize {
+    pub fn root(&mut self, mut face: usize) -> usize {
         while self.0[face] != face {
             self.0[face] = self.0[self.0[face]];
             face = self.0[face];
@@ -46,7 +46,7 @@ impl Groups {
         face
     }
 
-    fn unite(&mut self, a: usize, b: usize) {
+    pub fn unite(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b)] = a.min(b);
     }

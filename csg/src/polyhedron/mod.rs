@@ -3,6 +3,7 @@
 mod convex_hull;
 mod coplanar;
 mod orientation;
+mod shells;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -34,6 +35,12 @@ pub enum PolyhedronError {
     #[error("a convex hull of {count} points; the limit is {MAX_HULL_POINTS}")]
     TooManyPoints {
         /// The number of points.
+        count: usize,
+    },
+    /// There are too many shells.
+    #[error("{count} shells that look inwards; this is more than are placed in others")]
+    TooManyShells {
+        /// The number of shells that look inwards.
         count: usize,
     },
     /// A face names a point that does not exist.
@@ -230,17 +237,7 @@ impl Polyhedron {
 
     /// Six times the volume that the faces enclose.
     pub(crate) fn sixfold_volume(&self) -> Rational {
-        let mut sum = Rational::ZERO;
-        for corners in self.faces.iter().flat_map(|face| &face.loops) {
-            let [a, rest @ ..] = &corners[..] else {
-                continue;
-            };
-            for pair in rest.windows(2) {
-                let [p, q, r] = [*a, pair[0], pair[1]].map(|i| &self.points[i]);
-                sum += dot(p, &cross(q, r));
-            }
-        }
-        sum
+        sixfold_volume_of(&self.faces, |i| &self.points[i])
     }
 
     /// The least and the greatest corner of its bounding box, in f64.
@@ -298,6 +295,24 @@ impl Polyhedron {
             faces,
         })
     }
+}
+
+/// Six times the volume that faces enclose.
+fn sixfold_volume_of<'a>(
+    faces: &[PolyhedronFace],
+    point: impl Fn(usize) -> &'a SpacePoint,
+) -> Rational {
+    let mut sum = Rational::ZERO;
+    for corners in faces.iter().flat_map(|face| &face.loops) {
+        let [a, rest @ ..] = &corners[..] else {
+            continue;
+        };
+        for pair in rest.windows(2) {
+            let [p, q, r] = [*a, pair[0], pair[1]].map(&point);
+            sum += dot(p, &cross(q, r));
+        }
+    }
+    sum
 }
 
 /// The outward normal of a face, of any length.

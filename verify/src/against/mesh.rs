@@ -1,9 +1,34 @@
 //! The measures of the mesh that another program wrote.
 
 use super::answer::{StatedAccuracy, StatedMeasures};
-use super::mesh_file::{MAX_TRIANGLES, MeshFormat, MeshReadError, ReadMesh, read};
 use nalgebra::{Point3, Vector3};
+use premio_csg::mesh_file::{
+    MeshFile, MeshFileError, MeshFormat, MeshReadOptions, ObjectPlacement,
+};
 use std::collections::HashMap;
+
+/// The largest number of triangles: their sides have to fit into memory.
+const MAX_TRIANGLES: usize = 1 << 23;
+
+/// Why a mesh has no measures.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshReadError {
+    /// The file is not of this format.
+    #[error(transparent)]
+    File(#[from] MeshFileError),
+    /// There are too many triangles.
+    #[error("found {count} triangles, expected at most {MAX_TRIANGLES}")]
+    TooMany {
+        /// Their number.
+        count: usize,
+    },
+    /// A side has not as many triangles in one sense as in the other.
+    #[error("the mesh is not closed, or not oriented, at ({:.6}, {:.6}, {:.6})", .place[0], .place[1], .place[2])]
+    Open {
+        /// An end of such a side.
+        place: [f64; 3],
+    },
+}
 
 /// The measures of a closed mesh, by the divergence theorem. The bounds are those of its corners;
 /// the solids are the outer shells, where no side has more than two triangles.
@@ -11,7 +36,11 @@ use std::collections::HashMap;
 /// # Errors
 /// The file is not of this format, or the mesh is not closed.
 pub fn measures(bytes: &[u8], format: MeshFormat) -> Result<StatedMeasures, MeshReadError> {
-    read(bytes, format)?.measures()
+    let options = MeshReadOptions {
+        max_corners: 3 * MAX_TRIANGLES,
+        placement: ObjectPlacement::Build,
+    };
+    TriangleMesh::new(MeshFile::read(bytes, format, &options)?).measures()
 }
 
 /// A side of triangles, with the numbers of those in each sense.
@@ -23,7 +52,33 @@ struct SideUse {
     triangle: usize,
 }
 
-impl ReadMesh {
+/// The triangles of a file.
+struct TriangleMesh {
+    points: Vec<[f64; 3]>,
+    triangles: Vec<[usize; 3]>,
+    /// Whether the coordinates were rounded to single precision.
+    is_single_precision: bool,
+}
+
+impl TriangleMesh {
+    /// The triangles of each face, all from its first corner. One with two corners at one point has
+    /// no area, and is left out.
+    fn new(file: MeshFile<f64>) -> Self {
+        let mut triangles = Vec::new();
+        for face in file.objects.iter().flat_map(|faces| faces.iter()) {
+            let [a, rest @ ..] = face else {
+                continue;
+            };
+            let fan = rest.windows(2).map(|pair| [*a, pair[0], pair[1]]);
+            triangles.extend(fan.filter(|[a, b, c]| a != b && b != c && c != a));
+        }
+        Self {
+            points: file.points,
+            triangles,
+            is_single_precision: file.is_single_precision,
+        }
+    }
+
     fn measures(&self) -> Result<StatedMeasures, MeshReadError> {
         let count = self.triangles.len();
         if count > MAX_TRIANGLES {

@@ -9,6 +9,5 @@ pub mod answer;
 pub mod comparison;
 pub mod import;
 pub mod mesh;
-pub mod mesh_file;
 pub mod result_file;
 pub mod template;

@@ -1,9 +1,9 @@
 //! The measures of a file that another program wrote.
 
 use super::answer::StatedMeasures;
-use super::mesh::measures as mesh_measures;
-use super::mesh_file::{MeshFormat, MeshReadError};
+use super::mesh::{MeshReadError, measures as mesh_measures};
 use crate::checks::step::foreign::{StepMeasureError, measures as step_measures};
+use premio_csg::mesh_file::MeshFormat;
 use std::fmt;
 
 /// A format of results.

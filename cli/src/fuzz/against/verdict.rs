@@ -213,7 +213,7 @@ fn bytes(path: &Path) -> std::io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use premio_verify::against::mesh_file::MeshFormat;
+    use premio_csg::mesh_file::MeshFormat;
 
     fn of(end: ProgramEnd, output: &str, errors: &str) -> ProgramResult {
         let report = ProgramReport {

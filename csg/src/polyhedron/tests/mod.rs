@@ -2,6 +2,8 @@
 use super::*;
 use proptest::prelude::*;
 
+mod shells;
+
 fn points(all: &[[i32; 3]]) -> Vec<SpacePoint> {
     all.iter().map(|p| p.map(Rational::from)).collect()
 }

@@ -4,6 +4,7 @@ pub mod construction;
 mod drawing_file;
 pub mod evaluate;
 pub mod figure;
+mod height_field;
 pub mod lettering;
 pub mod mesh_file;
 pub mod object_model;

@@ -11,10 +11,6 @@ mod faces;
 mod obj;
 mod off;
 mod placement;
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "the reader of OpenSCAD files will use it")
-)]
 mod polyhedra;
 mod stl;
 mod three_mf;

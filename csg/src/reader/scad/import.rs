@@ -1,4 +1,4 @@
-//! `import`: drawings of other programs.
+//! `import` and `surface`: drawings, meshes and height fields of other programs.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,6 +15,9 @@ use super::figures::bad_figure;
 use super::region::Region;
 use crate::drawing_file::{self, Drawing, DrawingFileError, DrawingOptions};
 use crate::figure::FigureError;
+use crate::height_field::HeightField;
+use crate::mesh_file::{MeshFile, MeshFormat, MeshReadOptions, ObjectPlacement};
+use crate::polyhedron::{MAX_CORNERS, Polyhedron, PolyhedronError};
 
 /// The files that a text imports.
 pub(super) struct ImportedFiles<'a> {
@@ -65,16 +68,74 @@ pub(super) enum DrawingFormat {
     Svg,
 }
 
-impl DrawingFormat {
+/// A format that `import` reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ImportFormat {
+    Drawing(DrawingFormat),
+    Mesh(MeshFormat),
+}
+
+impl ImportFormat {
     /// The format of a file, by its ending.
     pub fn of(file: &str) -> Option<Self> {
-        let ending = Path::new(file).extension()?.to_str()?;
-        match ending.to_ascii_lowercase().as_str() {
-            "dxf" => Some(Self::Dxf),
-            "svg" => Some(Self::Svg),
-            _ => None,
+        let ending = Path::new(file).extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "dxf" => Some(Self::Drawing(DrawingFormat::Dxf)),
+            "svg" => Some(Self::Drawing(DrawingFormat::Svg)),
+            _ => {
+                let mesh = MeshFormat::ALL
+                    .into_iter()
+                    .find(|mesh| mesh.ending() == ending);
+                mesh.map(Self::Mesh)
+            }
         }
     }
+}
+
+/// The polyhedra of a mesh, of which the union is meant.
+pub(super) fn mesh(
+    format: MeshFormat,
+    bytes: &[u8],
+    arguments: &Arguments,
+) -> Result<Vec<Polyhedron>, SpannedError> {
+    let wrong = |found: &dyn std::fmt::Display| {
+        SpannedError::input(
+            arguments.span.clone(),
+            found.to_string(),
+            "a mesh that bounds a solid",
+        )
+    };
+    let options = MeshReadOptions {
+        max_corners: MAX_CORNERS,
+        placement: ObjectPlacement::AsWritten,
+    };
+    let file = MeshFile::<Rational>::read(bytes, format, &options);
+    match file.map_err(|error| wrong(&error))?.polyhedra() {
+        Ok(polyhedra) => Ok(polyhedra),
+        Err(PolyhedronError::Empty) => Ok(Vec::new()),
+        Err(error) => Err(wrong(&error)),
+    }
+}
+
+/// The polyhedron of a height field.
+pub(super) fn surface(
+    file: &str,
+    bytes: &[u8],
+    arguments: &Arguments,
+) -> Result<Polyhedron, SpannedError> {
+    let is_picture = Path::new(file)
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    let wrong = |found: &dyn std::fmt::Display| {
+        SpannedError::input(arguments.span.clone(), found.to_string(), "a height field")
+    };
+    let field = match is_picture {
+        true => HeightField::from_png(bytes, arguments.flag("invert")?),
+        false => HeightField::from_dat(bytes),
+    };
+    let field = field.map_err(|error| wrong(&error))?;
+    let made = field.polyhedron(arguments.flag("center")?);
+    made.map_err(|error| wrong(&error))
 }
 
 /// The region of a drawing; `None` if it is empty.

@@ -1,6 +1,7 @@
 //! The meaning of OpenSCAD's nodes.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use premio_kernel::number::rational::{Rational, from_decimal, to_f64};
 
@@ -12,7 +13,7 @@ use super::SIX_DIGITS;
 use super::arguments::{Argument, Arguments, Value};
 use super::facets::FacetRule;
 use super::figures::{self, bad_figure};
-use super::import::{self, DrawingFormat, ImportedFiles};
+use super::import::{self, ImportFormat, ImportedFiles};
 use super::matrix::Matrix;
 use super::measures::Shape;
 use super::refusal::construction_error;
@@ -26,6 +27,8 @@ use crate::construction::{
     AffineMap, ConstructionError, convex_hull, extent, mapped, minkowski_sum, section, shadow,
 };
 use crate::figure::{Figure, FigureError, FigureOperation, OffsetJoin, PlaneMap};
+use crate::polyhedron::Polyhedron;
+use crate::primitive::Primitive;
 use premio_text::escape::quote;
 
 /// What a node makes.
@@ -36,7 +39,7 @@ enum Geometry {
 }
 
 /// The supported nodes.
-const KNOWN: [&str; 24] = [
+const KNOWN: [&str; 25] = [
     "group",
     "union",
     "hull",
@@ -61,6 +64,7 @@ const KNOWN: [&str; 24] = [
     "fill",
     "text",
     "import",
+    "surface",
 ];
 
 /// Evaluates the nodes of a file, children first.
@@ -219,6 +223,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 text::text(arguments, fonts, &mut self.notes).map(plane)
             }
             "import" => self.import(arguments),
+            "surface" => self.surface(arguments),
             "projection" => self.projection(children, arguments),
             "resize" => self.resize(children, arguments),
             _ => Err(unknown(name, node.name)),
@@ -231,12 +236,41 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         ])?;
         let place = arguments.require("file")?.clone();
         let file = arguments.words("file")?;
-        let Some(format) = DrawingFormat::of(file) else {
-            return Err(place.wrong("a file with the ending `dxf` or `svg`"));
+        let Some(format) = ImportFormat::of(file) else {
+            let found = format!("the file {}", quote(file));
+            let expected = "a file of `dxf`, `svg`, `stl`, `off`, `obj`, `3mf` or `amf`";
+            return Err(SpannedError::input(place.span.clone(), found, expected));
         };
         let bytes = self.files.bytes(file, &place)?;
-        let region = import::drawing(format, &bytes, arguments, &mut self.rule, &mut self.notes);
-        region.map(plane)
+        match format {
+            ImportFormat::Drawing(format) => {
+                let (rule, notes) = (&mut self.rule, &mut self.notes);
+                import::drawing(format, &bytes, arguments, rule, notes).map(plane)
+            }
+            ImportFormat::Mesh(format) => {
+                let polyhedra = import::mesh(format, &bytes, arguments)?;
+                let parts: Vec<SolidId> = polyhedra
+                    .into_iter()
+                    .map(|polyhedron| self.polyhedron(polyhedron))
+                    .collect();
+                let union = crate::tree::Operation::Union;
+                Ok(solid(Some(self.builder.operation(union, &parts))))
+            }
+        }
+    }
+
+    fn surface(&mut self, arguments: &mut Arguments) -> Result<Geometry, SpannedError> {
+        arguments.bind(&["file", "center", "invert"])?;
+        let place = arguments.require("file")?.clone();
+        let file = arguments.words("file")?;
+        let bytes = self.files.bytes(file, &place)?;
+        let field = import::surface(file, &bytes, arguments)?;
+        Ok(solid(Some(self.polyhedron(field))))
+    }
+
+    fn polyhedron(&mut self, polyhedron: Polyhedron) -> SolidId {
+        let polyhedron = Arc::new(polyhedron);
+        self.builder.primitive(Primitive::Polyhedron { polyhedron })
     }
 
     fn placed(&mut self, shape: Shape) -> Geometry {
@@ -540,7 +574,6 @@ fn constructed(
 fn unknown(name: &str, place: Lexeme) -> SpannedError {
     let reason = match name {
         "roof" => "it is not a regularised set operation or a rigid motion",
-        "surface" => "it needs another file",
         "translate" | "rotate" | "mirror" | "scale" | "for" | "if" | "module" => {
             "this is not flattened: write the file with `openscad -o part.csg part.scad`"
         }

@@ -68,11 +68,11 @@ fn square(arguments: &mut Arguments) -> Result<Made, SpannedError> {
 pub(super) fn square_size(arguments: &Arguments) -> Result<[Rational; 2], SpannedError> {
     let size = arguments.require("size")?;
     if size.number().is_ok() {
-        let edge = length(size, "size")?;
+        let edge = length(size)?;
         return Ok([edge.clone(), edge]);
     }
     let [x, y] = size.list("a number or a list of two")?;
-    Ok([length(x, "size along x")?, length(y, "size along y")?])
+    Ok([length(x)?, length(y)?])
 }
 
 fn polygon(arguments: &mut Arguments) -> Result<Made, SpannedError> {

@@ -5,8 +5,9 @@ use std::ops::Range;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
-use super::super::number::{bad_length, show};
-use super::arguments::{Argument, Arguments};
+use super::super::notes::Notes;
+use super::super::number::bad_length;
+use super::arguments::{Argument, Arguments, Value};
 use crate::primitive::{Primitive, PrimitiveError};
 use crate::transform::Transform;
 
@@ -25,18 +26,25 @@ impl MovedPrimitive {
     }
 }
 
-/// A non-negative length.
-pub(super) fn length(argument: &Argument, what: &str) -> Result<Rational, SpannedError> {
+/// A length. A negative one counts as zero, as in OpenSCAD.
+pub(super) fn length(argument: &Argument) -> Result<Rational, SpannedError> {
     let value = argument.number()?;
-    if *value < Rational::ZERO {
-        let expected = format!("a {what} of zero or more");
-        return Err(SpannedError::input(
-            argument.span.clone(),
-            show(value),
-            expected,
-        ));
+    Ok(value.clone().max(Rational::ZERO))
+}
+
+/// Says which sizes of a node are negative.
+pub(super) fn remark_negative(arguments: &Arguments, notes: &mut Notes) {
+    const SIZES: [&str; 9] = ["size", "r", "r1", "r2", "d", "d1", "d2", "h", "height"];
+    let is_negative = |value: &Value| matches!(value, Value::Number(x) if *x < Rational::ZERO);
+    for argument in SIZES.iter().filter_map(|name| arguments.find(name)) {
+        let has_negative = match &argument.value {
+            Value::List(items) => items.iter().any(|item| is_negative(&item.value)),
+            value => is_negative(value),
+        };
+        if has_negative {
+            notes.add("a negative size counts as zero", argument.span.clone());
+        }
     }
-    Ok(value.clone())
 }
 
 /// Lengths that were checked already, so an error points at the whole node.
@@ -59,10 +67,10 @@ pub(super) fn radius(
     diameter: &str,
 ) -> Result<Option<Rational>, SpannedError> {
     if let Some(argument) = arguments.find(radius) {
-        return length(argument, "radius").map(Some);
+        return length(argument).map(Some);
     }
     match arguments.find(diameter) {
-        Some(argument) => Ok(Some(half(&length(argument, "diameter")?))),
+        Some(argument) => Ok(Some(half(&length(argument)?))),
         None => Ok(None),
     }
 }

@@ -15,7 +15,7 @@ use super::facets::FacetRule;
 use super::figures::{self, bad_figure};
 use super::import::{self, ImportFormat, ImportedFiles};
 use super::matrix::Matrix;
-use super::measures::Shape;
+use super::measures::{Shape, remark_negative};
 use super::refusal::construction_error;
 use super::region::Region;
 use super::shapes;
@@ -157,7 +157,9 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         children: Children,
     ) -> Result<Geometry, SpannedError> {
         let name = self.cursor.text(node.name);
+        let is_whole = node.is_operand;
         let arguments = &mut node.arguments;
+        remark_negative(arguments, &mut self.notes);
         let union = FigureOperation::Union;
         match name {
             "group" | "union" | "render" | "color" => self.combined(union, children),
@@ -175,14 +177,14 @@ impl<'c, 'a> Evaluator<'c, 'a> {
             }
             "linear_extrude" => {
                 let raise = Raise::new(arguments)?;
-                let region = self.region(children, name)?;
+                let region = self.sweepable(children, name, is_whole)?;
                 let rule = &self.rule;
                 let part = region.map(|r| raise.solid(&mut self.builder, &r, arguments, rule));
                 Ok(solid(part.transpose()?))
             }
             "rotate_extrude" => {
                 let spin = Spin::new(arguments)?;
-                let region = self.region(children, name)?;
+                let region = self.sweepable(children, name, is_whole)?;
                 let rule = &mut self.rule;
                 let part = region.map(|r| spin.solid(&mut self.builder, &r, arguments, rule));
                 Ok(solid(part.transpose()?))
@@ -323,6 +325,25 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         match self.combined(FigureOperation::Union, children)? {
             Geometry::Plane(region) => Ok(Some(region)),
             Geometry::Nothing | Geometry::Solid(_) => Ok(None),
+        }
+    }
+
+    /// The region of an extrusion or a revolution. An operand of a hull or a Minkowski sum is
+    /// combined in the plane, because these need the faces of the result.
+    fn sweepable(
+        &mut self,
+        children: Children,
+        outer: &str,
+        is_whole: bool,
+    ) -> Result<Option<Region>, SpannedError> {
+        let region = self.region(children, outer)?;
+        match region {
+            Some(region) if is_whole && !region.is_union() => {
+                let span = region.span();
+                let figure = region.evaluated(&span)?;
+                Ok(figure.map(|figure| Region::new(figure, span)))
+            }
+            region => Ok(region),
         }
     }
 

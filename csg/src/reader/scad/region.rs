@@ -131,6 +131,16 @@ impl Region {
         }
     }
 
+    /// Whether it is a union of figures.
+    pub fn is_union(&self) -> bool {
+        match self {
+            Self::Figure(_) => true,
+            Self::Combined { op, operands, .. } => {
+                *op == FigureOperation::Union && operands.iter().all(Self::is_union)
+            }
+        }
+    }
+
     /// The figures of a union, each in its place; `None` if there is another operation.
     pub fn figures(&self) -> Result<Option<Vec<Figure>>, SpannedError> {
         match self {

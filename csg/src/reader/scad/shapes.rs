@@ -23,15 +23,11 @@ pub(super) fn cube(arguments: &mut Arguments) -> Result<Shape, SpannedError> {
     arguments.bind(&["size", "center"])?;
     let size = arguments.require("size")?;
     let size = if size.number().is_ok() {
-        let edge = length(size, "size")?;
+        let edge = length(size)?;
         [edge.clone(), edge.clone(), edge]
     } else {
         let [x, y, z] = size.list("a number or a list of three")?;
-        [
-            length(x, "size along x")?,
-            length(y, "size along y")?,
-            length(z, "size along z")?,
-        ]
+        [length(x)?, length(y)?, length(z)?]
     };
     if size.iter().any(Rational::is_zero) {
         return Ok(None);
@@ -77,7 +73,7 @@ pub(super) fn cylinder(
     rule: &mut FacetRule,
 ) -> Result<Shape, SpannedError> {
     arguments.bind(&["h", "r1", "r2", "center", "r", "d", "d1", "d2"])?;
-    let height = length(arguments.require("h")?, "height")?;
+    let height = length(arguments.require("h")?)?;
     let both = radius(arguments, "r", "d")?;
     let end = |name: &str, diameter: &str| match radius(arguments, name, diameter)? {
         Some(radius) => Ok(radius),

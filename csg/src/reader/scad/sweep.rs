@@ -35,8 +35,8 @@ impl Raise {
             "height", "center", "scale", "twist", "v", "h", "slices", "segments",
         ])?;
         let height = match arguments.find("h") {
-            Some(height) => length(height, "height")?,
-            None => length(arguments.require("height")?, "height")?,
+            Some(height) => length(height)?,
+            None => length(arguments.require("height")?)?,
         };
         let top = scale(arguments)?;
         check_upright(arguments)?;

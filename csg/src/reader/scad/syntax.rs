@@ -18,6 +18,8 @@ pub(super) struct ScadNode {
     pub is_live: bool,
     /// Whether it is marked with `!`.
     pub is_root: bool,
+    /// Whether it is inside a hull or a Minkowski sum.
+    pub is_operand: bool,
 }
 
 /// All nodes of a file.
@@ -37,6 +39,8 @@ struct Frame {
     is_single: bool,
     is_live: bool,
     is_root: bool,
+    /// It is inside a hull or a Minkowski sum.
+    is_operand: bool,
 }
 
 /// The marks before a node, and its name.
@@ -67,6 +71,7 @@ pub(super) fn parse(cursor: &mut Cursor<'_>) -> Result<ScadFile, SpannedError> {
         is_single: false,
         is_live,
         is_root: false,
+        is_operand: false,
     };
     let mut parser = Parser {
         cursor,
@@ -136,6 +141,7 @@ impl Parser<'_, '_> {
             children: frame.children,
             is_live: frame.is_live,
             is_root: frame.is_root,
+            is_operand: frame.is_operand,
         });
         if let Some(outer) = self.frames.last_mut() {
             outer.children.push(self.nodes.len() - 1);
@@ -198,6 +204,13 @@ impl Parser<'_, '_> {
             is_single,
             is_live,
             is_root: is_root && is_live,
+            is_operand: self.frames.last().is_some_and(|outer| {
+                let outer_name = outer
+                    .arguments
+                    .as_ref()
+                    .map(|_| self.cursor.text(outer.name));
+                outer.is_operand || matches!(outer_name, Some("hull" | "minkowski"))
+            }),
         });
         Ok(())
     }

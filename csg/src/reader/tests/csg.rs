@@ -302,3 +302,139 @@ fn extrusions_have_the_slices_of_openscad() {
         assert!((found - volume).abs() < 1e-2, "{arguments}: {found}");
     }
 }
+
+/// Files in memory.
+#[derive(Debug)]
+struct Shelf(Vec<(&'static str, &'static [u8])>);
+
+impl IncludeLoader for Shelf {
+    fn find(&self, including: Option<&str>, path: &str) -> Result<IncludePath, IncludeError> {
+        assert_eq!(including, Some("part.csg"));
+        let (name, identity) = (path.to_owned(), path.to_owned());
+        match self.0.iter().any(|(known, _)| *known == path) {
+            true => Ok(IncludePath { name, identity }),
+            false => Err(IncludeError::new("no such file")),
+        }
+    }
+
+    fn load(&self, file: &IncludePath) -> Result<Vec<u8>, IncludeError> {
+        let found = self.0.iter().find(|(known, _)| *known == file.name);
+        Ok(found.map(|(_, bytes)| bytes.to_vec()).unwrap_or_default())
+    }
+}
+
+/// The volume of a part that imports these files.
+fn imported(text: &str, files: &[(&'static str, &'static [u8])]) -> Result<f64, ReadError> {
+    let options = ReadOptions {
+        includes: Includes::new(Shelf(files.to_vec())),
+        ..ReadOptions::default()
+    };
+    let program = parse("part.csg", text.as_bytes(), Format::Csg, &options)?;
+    assert_eq!(program.standalone, StandaloneText::Unavailable);
+    assert_eq!(program.included.len(), files.len());
+    let tree = program.tree("part.csg", text.as_bytes())?;
+    let known = crate::evaluate::evaluate(&tree, &crate::evaluate::EvaluationOptions::default());
+    Ok(known.unwrap().mass().volume)
+}
+
+/// A half disc of radius 2, closed by a line.
+const HALF_DISC: &[u8] =
+    b"0\nSECTION\n2\nENTITIES\n0\nARC\n8\n0\n10\n0\n20\n0\n40\n2\n50\n0\n51\n180\n\
+    0\nLINE\n8\n0\n10\n-2\n20\n0\n11\n2\n21\n0\n0\nENDSEC\n0\nEOF\n";
+
+const TETRAHEDRON: &[u8] =
+    b"OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+#[test]
+fn files_are_imported() {
+    let plate = "linear_extrude(height = 3) { import(file = \"a.dxf\", layer = \"\"); }";
+    let volume = imported(plate, &[("a.dxf", HALF_DISC)]).unwrap();
+    assert!((volume - 6.0 * std::f64::consts::PI).abs() < 1e-9);
+    let solid = "import(file = \"t.off\", convexity = 2);";
+    let volume = imported(solid, &[("t.off", TETRAHEDRON)]).unwrap();
+    assert!((volume - 1.0 / 6.0).abs() < 1e-12);
+    // Heights of 1, over a base at zero: a block.
+    let field = "surface(file = \"h.dat\", center = true);";
+    let volume = imported(field, &[("h.dat", b"1 1 1\n1 1 1\n")]).unwrap();
+    assert!((volume - 2.0).abs() < 1e-12);
+    for (text, files) in [
+        ("import(file = \"none.stl\");", &[][..]),
+        ("import(file = \"a.txt\");", &[("a.txt", &b""[..])]),
+        ("import(file = \"t.off\");", &[("t.off", &b"OFF 1 1 1"[..])]),
+        ("surface(file = \"h.dat\");", &[("h.dat", &b"1 x"[..])]),
+    ] {
+        let error = imported(text, files).unwrap_err().to_string();
+        assert!(error.starts_with("part.csg:1:"), "{error}");
+    }
+    let error = parse(
+        "part.csg",
+        solid.as_bytes(),
+        Format::Csg,
+        &ReadOptions::default(),
+    );
+    assert!(
+        error
+            .unwrap_err()
+            .to_string()
+            .contains("files cannot be read")
+    );
+}
+
+#[test]
+fn texts_are_polygons() {
+    let sign = |text: &str| {
+        let text = format!("linear_extrude(height = 1) {{ text(text = \"{text}\", size = 10); }}");
+        let program = parse(
+            "part",
+            text.as_bytes(),
+            Format::Csg,
+            &ReadOptions::default(),
+        );
+        let program = program.unwrap();
+        assert_eq!(program.standalone, StandaloneText::AsRead);
+        program
+            .tree("part", text.as_bytes())
+            .unwrap()
+            .leaves()
+            .count()
+    };
+    assert_eq!(sign("PREMIO"), 6);
+    assert_eq!(sign("a b"), 2);
+    assert_eq!(sign(" "), 0);
+    let other = csg_notes("linear_extrude(height = 1) { text(text = \"x\", font = \"No Font\"); }");
+    assert_eq!(
+        other,
+        ["there is no font No Font; Liberation Sans is taken instead"]
+    );
+}
+
+/// A profile of an intersection is combined before its hull is made.
+#[test]
+fn operands_of_hulls_are_combined_in_the_plane() {
+    let half = "intersection() { circle(r = 2, $fn = 0); multmatrix([[1,0,0,-2],[0,1,0,0],\
+        [0,0,1,0],[0,0,0,1]]) { square(size = [4, 2]); } }";
+    let plate = format!("hull() {{ linear_extrude(height = 3) {{ {half} }} }}");
+    let known =
+        crate::evaluate::evaluate(&csg(&plate), &crate::evaluate::EvaluationOptions::default());
+    let volume = known.unwrap().mass().volume;
+    assert!((volume - 6.0 * std::f64::consts::PI).abs() < 1e-9);
+}
+
+#[test]
+fn negative_sizes_are_nothing() {
+    let notes = csg_notes("cube(size = 1); cube(size = [1, -2, 3]);");
+    assert_eq!(notes, ["a negative size counts as zero"]);
+    assert_eq!(csg("cube(size = 1); sphere(r = -1);").leaves().count(), 1);
+}
+
+/// The notes on a text.
+fn csg_notes(text: &str) -> Vec<String> {
+    let read = read(
+        "part",
+        text.as_bytes(),
+        Format::Csg,
+        &ReadOptions::default(),
+    );
+    let notes = read.unwrap().notes.into_iter();
+    notes.map(|note| note.text).collect()
+}

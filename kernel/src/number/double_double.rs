@@ -104,11 +104,18 @@ impl F106 {
         Self::whole_of(high)
     }
 
-    /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d).
+    /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d). Of a great x
+    /// the exponent is split off: e^x = 2^k e^(x - k ln 2).
     fn growth(self) -> Self {
         let x = Float::abs(self);
-        if x.high > GREAT || x.is_nan() {
+        if x.high > GREATEST || x.is_nan() {
             return Self::from_extended(x.extended().growth());
+        }
+        if x.high > GREAT {
+            let k = (x.high / std::f64::consts::LN_2).floor();
+            let rest = x - LN_2 * Self::whole_of(k);
+            let mantissa = Float::max(rest, Self::ZERO).growth() + Self::ONE;
+            return mantissa.by_power(power(k as i64)) - Self::ONE;
         }
         let halvings = match x.high < power(-8) {
             true => 0,
@@ -384,6 +391,15 @@ impl Float for F106 {
 
 /// Above this number the doublings of an exponential lose digits.
 const GREAT: f64 = 2.0;
+
+/// The natural logarithm of two.
+const LN_2: F106 = F106 {
+    high: std::f64::consts::LN_2,
+    low: 2.319_046_813_846_299_6e-17,
+};
+
+/// Above this number an exponential is computed in more bits.
+const GREATEST: f64 = 512.0;
 
 /// The square of this length, and of its reciprocal, has all digits.
 const FAR: f64 = power(400);

@@ -88,11 +88,18 @@ impl F237 {
         }
     }
 
-    /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d).
+    /// e^|x| - 1: Taylor series of x / 2^n, then n doublings by e^2x - 1 = d (2 + d). Of a great x
+    /// the exponent is split off: e^x = 2^k e^(x - k ln 2).
     pub(super) fn growth(self) -> Self {
         let x = Float::abs(self);
-        if x > Self::from_f64(GREAT) || x.is_nan() {
+        if x > Self::from_f64(GREATEST) || x.is_nan() {
             return Self(x.0.exp_m1());
+        }
+        if x > Self::from_f64(GREAT) {
+            let k = (x.rounded() / std::f64::consts::LN_2).floor();
+            let rest = x - Self(consts::LN_2) * Self::from_f64(k);
+            let mantissa = Float::max(rest, Self::ZERO).growth() + Self::ONE;
+            return Self(mantissa.0.mul_pow2(k as u32)) - Self::ONE;
         }
         let halvings = if x < Self(power(-8)) {
             0
@@ -331,6 +338,9 @@ impl Float for F237 {
 
 /// Above this number the doublings lose digits.
 const GREAT: f64 = 2.0;
+
+/// Above this number an exponential has no use: its library function is slow.
+const GREATEST: f64 = 512.0;
 
 /// 1 / n! for n = 1, 2, ...: as many terms as contribute for numbers below 2^-8.
 static SHARES: LazyLock<[F237; 24]> = LazyLock::new(|| {

@@ -123,8 +123,19 @@ impl<N: Float> Arrangement<N> {
         let m = &self.meetings[w.meeting];
         let all = [m.carriers[0], m.carriers[1], w.carrier];
         let middle = m.curve.point(w.t);
+        // Rounded distances leave few corners for those of all bits.
+        let near = rounded(&middle);
+        let rounding = near.iter().fold(0.0f64, |most, x| most.max(x.abs())) * f64::EPSILON;
+        let bound = 2.0 * w.reach.rounded() + 4.0 * rounding;
+        let is_near = |p: &Point3<N>| {
+            let pairs = rounded(p).into_iter().zip(near);
+            pairs.into_iter().all(|(x, y)| (x - y).is_within(bound))
+        };
         let fits = |v: &usize| {
             let p = corners.all[*v].point;
+            if !is_near(&p) {
+                return false;
+            }
             (p - middle).length().is_within(w.reach)
                 && all
                     .iter()

@@ -8,6 +8,7 @@ use super::FigurePoint;
 use super::hull_elements::{Disc, HullElement, square};
 use premio_kernel::number::predicates::RELATIVE_RESOLUTION;
 use premio_kernel::number::rational::{Rational, to_f64};
+use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// An element with what f64 needs.
@@ -130,6 +131,7 @@ pub(super) fn wrapped(elements: &[HullElement]) -> Vec<usize> {
     };
     let mut order = vec![start];
     let mut heading = 0.0;
+    let mut steps: HashMap<[usize; 2], usize> = HashMap::new();
     let touching = touching(&shapes);
     for _ in 0..4 * shapes.len() {
         let at = order[order.len() - 1];
@@ -137,9 +139,10 @@ pub(super) fn wrapped(elements: &[HullElement]) -> Vec<usize> {
             break;
         };
         heading = angle;
-        if order.len() > 1 && order[0] == at && order[1] == next {
-            order.pop();
-            return order;
+        // Of points in line with the first one only the outermost is passed again.
+        let step = order.len() - 1;
+        if let Some(first) = steps.insert([at, next], step) {
+            return order.drain(first..step).collect();
         }
         order.push(next);
     }

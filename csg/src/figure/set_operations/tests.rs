@@ -197,6 +197,18 @@ fn hulls_of_figures_with_arcs() {
     let with_square = Figure::hull_of(&[&half, &moved(&square(1), 0, -3)]).unwrap();
     assert_area(&with_square, 2.0 * PI + 7.5);
     assert_eq!(with_square.edges().len(), 4);
+    // The lowest points are in line; those between the ends are passed at the start only.
+    let row = [
+        moved(&square(1), 2, 0),
+        moved(&square(1), 5, 0),
+        square(1),
+        moved(&disc(1), 3, 7),
+    ];
+    let row = Figure::hull_of(&row.iter().collect::<Vec<_>>()).unwrap();
+    assert_eq!(
+        row.edges().iter().filter(|edge| edge.arc.is_none()).count(),
+        5
+    );
     let slot = Figure::hull_of(&[&disc(1), &moved(&disc(1), 4, 0)]).unwrap();
     assert_area(&slot, 8.0 + PI);
     let again = Figure::hull_of(&[&slot]).unwrap();

@@ -8,6 +8,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::leaves::{corners, of_union, own_corners};
 use super::rounding::rounded_hull;
+use super::tapered_hull::{ConvexHull, tapered_hull};
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{Disc, Figure, FigurePoint, HullElement};
@@ -18,39 +19,51 @@ use crate::tree::PlacedPrimitive;
 
 /// The convex hull of solids; empty if they are.
 ///
+/// `noise` is the distance by which coordinates may be off, relative to the size. Axes of rounded
+/// corners within this distance of each other are taken for one.
+///
 /// # Errors
 /// A solid is not a union of primitives, or the hull has faces of another kind than those of the
 /// primitives.
 pub fn convex_hull(
     builder: &mut Builder,
     solids: &[SolidId],
-) -> Result<SolidId, ConstructionError> {
+    noise: f64,
+) -> Result<ConvexHull, ConstructionError> {
+    let exact = |solid: SolidId| ConvexHull { solid, moved: 0.0 };
     let mut leaves: Vec<PlacedPrimitive> = Vec::new();
     for &solid in solids {
         leaves.extend(of_union(builder, solid, "hull")?);
     }
     if leaves.is_empty() {
-        return Ok(SolidId::EMPTY);
+        return Ok(exact(SolidId::EMPTY));
     }
     let points: Option<Vec<Vec<SpacePoint>>> = leaves.iter().map(corners).collect();
     if let Some(points) = points {
         let hull = Polyhedron::convex_hull(&points.concat())?;
         let polyhedron = Arc::new(hull);
-        return Ok(builder.primitive(Primitive::Polyhedron { polyhedron }));
+        let hull = builder.primitive(Primitive::Polyhedron { polyhedron });
+        return Ok(exact(hull));
     }
     if let Some(balls) = balls(&leaves) {
         let same = balls.iter().all(|ball| ball.radius == balls[0].radius);
         let centres: Vec<SpacePoint> = balls.iter().map(|ball| ball.centre.clone()).collect();
         if same && !are_in_line(&centres) {
-            return rounded_hull(builder, &centres, &balls[0].radius);
+            return rounded_hull(builder, &centres, &balls[0].radius).map(exact);
         }
     }
     for frame in axes(&leaves) {
         if let Some(primitive) = between_planes(&leaves, &frame)? {
-            return Ok(placed(builder, primitive, &frame));
+            return Ok(exact(placed(builder, primitive, &frame)));
         }
         if let Some(primitive) = about_axis(&leaves, &frame)? {
-            return Ok(placed(builder, primitive, &frame));
+            return Ok(exact(placed(builder, primitive, &frame)));
+        }
+        if let Some(elements) = ends_of_all(&leaves, &frame)
+            && let Some(hull) = tapered_hull(builder, &elements, noise)?
+        {
+            let solid = builder.moved(hull.solid, Transform::from_motion(&frame));
+            return Ok(ConvexHull { solid, ..hull });
         }
     }
     Err(ConstructionError::NoHull)
@@ -164,14 +177,19 @@ fn ends(placed: &PlacedPrimitive, back: &Motion) -> Option<Vec<(Rational, HullEl
     }
 }
 
+/// The discs, arcs and corners of leaves in planes across the z axis of a frame, by their heights.
+fn ends_of_all(leaves: &[PlacedPrimitive], frame: &Motion) -> Option<Vec<(Rational, HullElement)>> {
+    let back = frame.inverse();
+    let all: Option<Vec<_>> = leaves.iter().map(|placed| ends(placed, &back)).collect();
+    all.map(|all| all.concat())
+}
+
 /// The hull of leaves that end in the same two planes with the same outline: a prism.
 fn between_planes(
     leaves: &[PlacedPrimitive],
     frame: &Motion,
 ) -> Result<Option<PlacedPrimitive>, ConstructionError> {
-    let back = frame.inverse();
-    let all: Option<Vec<_>> = leaves.iter().map(|placed| ends(placed, &back)).collect();
-    let Some(all) = all.map(|all| all.concat()) else {
+    let Some(all) = ends_of_all(leaves, frame) else {
         return Ok(None);
     };
     let Some(low) = all.iter().map(|(z, _)| z).min().cloned() else {

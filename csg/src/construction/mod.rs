@@ -6,6 +6,7 @@
 //! | `leaves` | the placed primitives of a union, their corners and their columns |
 //! | `frames` | rotations along given directions |
 //! | `hull` | convex hulls |
+//! | `tapered_hull` | hulls of plates with rounded corners about common axes |
 //! | `rounding` | sums with a ball |
 //! | `minkowski` | other sums |
 //! | `affine` | images under affine maps |
@@ -20,12 +21,14 @@ mod leaves;
 mod minkowski;
 mod projection;
 mod rounding;
+mod tapered_hull;
 
 pub use affine::{AffineMap, mapped};
 pub use extent::extent;
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
 pub use projection::{section, shadow};
+pub use tapered_hull::ConvexHull;
 
 use crate::builder::TreeError;
 use crate::figure::FigureError;

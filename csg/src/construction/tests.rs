@@ -3,7 +3,7 @@
 use super::*;
 use crate::builder::{Builder, SolidId};
 use crate::evaluate::{EvaluationOptions, evaluate};
-use crate::figure::Figure;
+use crate::figure::{Figure, OffsetJoin};
 use crate::primitive::Primitive;
 use crate::ray_casting::RayOracle;
 use crate::transform::{Transform, TransformStep};
@@ -67,7 +67,7 @@ fn a_hull_of_blocks_is_a_polytope() {
     let low = block(&mut b, [4, 4, 1]);
     let high = block(&mut b, [2, 2, 1]);
     let high = b.moved(high, Transform::shift([1, 1, 4].map(n)));
-    let hull = convex_hull(&mut b, &[low, high]).unwrap();
+    let hull = convex_hull(&mut b, &[low, high], 0.0).unwrap().solid;
     // The lower slab, and a frustum of a pyramid from there to the top of the upper one.
     let frustum = 4.0 / 3.0 * (16.0 + 4.0 + 8.0);
     assert_eq!(check(&b, hull, 16.0 + frustum), ["plane"]);
@@ -79,7 +79,7 @@ fn balls_of_two_radii_have_a_cone_between_them() {
     for [x, z] in [[30, 10], [3, 4], [0, -9]] {
         let one = ball(&mut b, 6, [1, 2, 3]);
         let two = ball(&mut b, 3, [1 + x, 2, 3 + z]);
-        let hull = convex_hull(&mut b, &[one, two]).unwrap();
+        let hull = convex_hull(&mut b, &[one, two], 0.0).unwrap().solid;
         let (r, s, d) = (6.0, 3.0, f64::from(x).hypot(f64::from(z)));
         if d <= r - s {
             continue;
@@ -106,7 +106,7 @@ fn balls_of_one_radius_round_a_box() {
             .collect();
         let union = b.operation(Operation::Union, &balls);
         let union = turned(&mut b, union, degrees);
-        let hull = convex_hull(&mut b, &[union]).unwrap();
+        let hull = convex_hull(&mut b, &[union], 0.0).unwrap().solid;
         let volume = 240.0 + 2.0 * (60.0 + 40.0 + 24.0) + PI * (10.0 + 6.0 + 4.0) + 4.0 * PI / 3.0;
         assert_eq!(check(&b, hull, volume), ["cylinder", "plane", "sphere"]);
     }
@@ -117,7 +117,7 @@ fn balls_in_a_plane_round_a_plate() {
     let mut b = Builder::new();
     let corners = [[0, 0, 0], [6, 0, 2], [0, 5, 0]];
     let balls = corners.map(|at| ball(&mut b, 1, at));
-    let hull = convex_hull(&mut b, &balls).unwrap();
+    let hull = convex_hull(&mut b, &balls, 0.0).unwrap().solid;
     let [a, c, d] = [40f64.sqrt(), 5.0, 65f64.sqrt()];
     let area = 0.5 * (10f64.powi(2) + 30f64.powi(2)).sqrt();
     let volume = 2.0 * area + PI / 2.0 * (a + c + d) + 4.0 * PI / 3.0;
@@ -132,7 +132,7 @@ fn cylinders_between_two_planes_have_a_slot_as_hull() {
         let two = cylinder(&mut b, 2, 3, [9, 0, 1]);
         let union = b.operation(Operation::Union, &[one, two]);
         let union = turned(&mut b, union, degrees);
-        let hull = convex_hull(&mut b, &[union]).unwrap();
+        let hull = convex_hull(&mut b, &[union], 0.0).unwrap().solid;
         assert_eq!(
             check(&b, hull, 3.0 * (36.0 + 4.0 * PI)),
             ["cylinder", "plane"]
@@ -141,7 +141,7 @@ fn cylinders_between_two_planes_have_a_slot_as_hull() {
     let mut b = Builder::new();
     let one = cylinder(&mut b, 2, 3, [0, 0, 1]);
     let two = cylinder(&mut b, 2, 4, [9, 0, 1]);
-    let refused = convex_hull(&mut b, &[one, two]);
+    let refused = convex_hull(&mut b, &[one, two], 0.0);
     assert_eq!(refused, Err(ConstructionError::NoHull));
 }
 
@@ -152,7 +152,7 @@ fn what_is_round_about_an_axis_has_a_round_hull() {
     let pin = cylinder(&mut b, 1, 1, [0, 0, 4]);
     let both = b.operation(Operation::Union, &[disc, pin]);
     let both = turned(&mut b, both, 61);
-    let hull = convex_hull(&mut b, &[both]).unwrap();
+    let hull = convex_hull(&mut b, &[both], 0.0).unwrap().solid;
     // A disc, and a frustum from radius 5 at height 1 to the top of the pin.
     let frustum = PI * 4.0 / 3.0 * (25.0 + 5.0 + 1.0);
     assert_eq!(
@@ -255,4 +255,38 @@ fn sections_and_shadows() {
     let low = b.moved(wedge, Transform::shift([0, 0, -1].map(n)));
     close(section(&b, low).unwrap().area(), 6.0);
     close(shadow(&b, low).unwrap().area(), 12.0);
+}
+
+/// A plate whose outline is an offset of a rectangle of 8 by 4.
+fn rounded_plate(b: &mut Builder, radius: i32, height: i32, z: i32) -> SolidId {
+    let core = Figure::rectangle(&[8, 4].map(n)).unwrap();
+    let figure = core.offset(&n(radius), OffsetJoin::Round).unwrap();
+    let plate = b.primitive(Primitive::prism(figure, n(height)).unwrap());
+    b.moved(plate, Transform::shift([0, 0, z].map(n)))
+}
+
+#[test]
+fn rounded_plates_have_cones_between_them() {
+    for degrees in [0, 30] {
+        let mut b = Builder::new();
+        let low = rounded_plate(&mut b, 1, 1, 0);
+        let high = rounded_plate(&mut b, 3, 1, 4);
+        let both = b.operation(Operation::Union, &[low, high]);
+        let both = turned(&mut b, both, degrees);
+        let hull = convex_hull(&mut b, &[both], 0.0).unwrap();
+        assert_eq!(hull.moved, 0.0);
+        // The radius grows from 1 to 3 over a height of 4, and stays for 1. A section has the area
+        // 32 + 24 r + pi r^2.
+        let tapered = 4.0 * 32.0 + 24.0 * 8.0 + PI * 52.0 / 3.0;
+        let straight = 32.0 + 72.0 + 9.0 * PI;
+        let surfaces = ["cone", "cylinder", "plane"];
+        assert_eq!(check(&b, hull.solid, tapered + straight), surfaces);
+    }
+    // Other axes: a hull with faces of other kinds.
+    let mut b = Builder::new();
+    let low = rounded_plate(&mut b, 1, 1, 0);
+    let high = rounded_plate(&mut b, 3, 1, 4);
+    let high = b.moved(high, Transform::shift([1, 0, 0].map(n)));
+    let refused = convex_hull(&mut b, &[low, high], 0.0);
+    assert_eq!(refused, Err(ConstructionError::NoHull));
 }

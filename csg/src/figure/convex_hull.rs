@@ -263,6 +263,12 @@ fn pairs(order: &[usize]) -> impl Iterator<Item = [usize; 2]> {
     order.iter().zip(next).map(|(&i, &j)| [i, j])
 }
 
+/// The points of contact of the tangent that has two discs on its left.
+pub(crate) fn outer_tangent(a: &Disc, b: &Disc) -> [FigurePoint; 2] {
+    let Tangent { start, end } = Tangent::between(a, b);
+    [start, end]
+}
+
 /// The common tangent of two discs that has both on its left.
 struct Tangent {
     start: FigurePoint,

@@ -72,7 +72,7 @@ impl HullElement {
     }
 
     /// The greatest distance of its circle from the axes, rounded.
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         let disc = self.disc();
         let [x, y] = disc.centre.each_ref().map(|x| to_f64(x).abs());
         x.max(y) + to_f64(&disc.radius)

@@ -25,6 +25,7 @@ mod wrapping;
 
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
+pub(crate) use convex_hull::outer_tangent;
 pub use error::FigureError;
 pub use hull_elements::Disc;
 pub(crate) use hull_elements::HullElement;

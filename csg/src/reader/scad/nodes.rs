@@ -38,6 +38,9 @@ enum Geometry {
     Solid(SolidId),
 }
 
+/// The largest error of a number of six digits, relative to the number.
+const ROUNDING: f64 = 5.0 * SIX_DIGITS;
+
 /// The supported nodes.
 const KNOWN: [&str; 25] = [
     "group",
@@ -159,7 +162,9 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         let name = self.cursor.text(node.name);
         let is_whole = node.is_operand;
         let arguments = &mut node.arguments;
-        remark_negative(arguments, &mut self.notes);
+        if name != "offset" {
+            remark_negative(arguments, &mut self.notes);
+        }
         let union = FigureOperation::Union;
         match name {
             "group" | "union" | "render" | "color" => self.combined(union, children),
@@ -350,8 +355,18 @@ impl<'c, 'a> Evaluator<'c, 'a> {
     fn hull(&mut self, children: Children, span: &Range<usize>) -> Result<Geometry, SpannedError> {
         let solids = solids(&children);
         if !solids.is_empty() || children.each.is_empty() {
-            let hull = convex_hull(&mut self.builder, &solids);
-            return constructed(hull, span).map(solid);
+            let hull = convex_hull(&mut self.builder, &solids, ROUNDING);
+            if let Ok(hull) = &hull
+                && hull.moved > 0.0
+            {
+                let text = format!(
+                    "the corners of a hull are taken to be about common axes; coordinates change by \
+                     up to {:.1e}",
+                    hull.moved
+                );
+                self.notes.add(text, span.clone());
+            }
+            return constructed(hull.map(|hull| hull.solid), span).map(solid);
         }
         let mut figures: Vec<Figure> = Vec::new();
         for geometry in &children.each {

@@ -425,6 +425,8 @@ fn negative_sizes_are_nothing() {
     let notes = csg_notes("cube(size = 1); cube(size = [1, -2, 3]);");
     assert_eq!(notes, ["a negative size counts as zero"]);
     assert_eq!(csg("cube(size = 1); sphere(r = -1);").leaves().count(), 1);
+    let shrunk = "linear_extrude(height = 1) { offset(r = -1) { square(size = [4, 4]); } }";
+    assert!(csg_notes(shrunk).is_empty());
 }
 
 /// The notes on a text.
@@ -437,4 +439,34 @@ fn csg_notes(text: &str) -> Vec<String> {
     );
     let notes = read.unwrap().notes.into_iter();
     notes.map(|note| note.text).collect()
+}
+
+/// The corners of the upper plate are at 54.00017, by the rounding of its numbers.
+#[test]
+fn rounded_corners_of_hulls_are_about_common_axes() {
+    let plate = |size: &str, radius: &str, height: &str, z: &str| {
+        let figure = format!(
+            "offset(r = {radius}) {{ offset(r = -{radius}) {{ square(size = {size}, center = true); }} }}"
+        );
+        let plate = format!("linear_extrude(height = {height}) {{ {figure} }}");
+        format!("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,{z}],[0,0,0,1]]) {{ {plate} }}")
+    };
+    let low = plate("[116, 66]", "4", "1", "0");
+    let high = plate("[121.602, 71.6017]", "6.80083", "1", "3");
+    let text = format!("hull() {{ {low} {high} }}");
+    let notes = csg_notes(&text);
+    assert_eq!(notes.len(), 1);
+    assert!(
+        notes[0].ends_with("coordinates change by up to 1.7e-4"),
+        "{notes:?}"
+    );
+    let known =
+        crate::evaluate::evaluate(&csg(&text), &crate::evaluate::EvaluationOptions::default());
+    let known = known.unwrap();
+    // Sections have the area 108 * 58 + 332 r + pi r^2; r grows from 4 to 6.8 over a height of 3.
+    let [r, s] = [4.0f64, 6.80083];
+    let mean =
+        108.0 * 58.0 + 332.0 * (r + s) / 2.0 + std::f64::consts::PI * (r * r + r * s + s * s) / 3.0;
+    let top = 108.0 * 58.0 + 332.0 * s + std::f64::consts::PI * s * s;
+    assert!((known.mass().volume - (3.0 * mean + top)).abs() < 1e-6);
 }

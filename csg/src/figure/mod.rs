@@ -504,7 +504,11 @@ fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, F
         return Ok(vec![corner(&edge.start, Some(arc.clone()))]);
     }
     if hi[0] <= slack {
-        return Ok(Vec::new());
+        // Where the contour leaves the axis to the left, a segment along the axis follows.
+        let leaves = to_f64(&edge.start[0]) >= -slack;
+        let on_axis = [Rational::ZERO, edge.start[1].clone()];
+        let left = leaves.then(|| corner(&on_axis, None));
+        return Ok(left.into_iter().collect());
     }
     if !arc.centre[0].is_zero() {
         return Err(FigureError::ArcAcrossAxis);
@@ -521,6 +525,18 @@ fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, F
     let is_up = arc.turn == ArcTurn::Counterclockwise;
     let [first, last] = [pole(!is_up), pole(is_up)];
     let is_right = |p: &FigurePoint| p[0] > Rational::ZERO;
+    let is_at = |pole: &FigurePoint| {
+        let [x, y] = [0, 1].map(|i| to_f64(&(&edge.start[i] - &pole[i])).abs());
+        x.max(y) <= slack
+    };
+    if is_at(&last) {
+        // The arc is on the left first.
+        let mut passed = vec![corner(&last, None), corner(&first, Some(arc.clone()))];
+        if !is_right(&edge.end) {
+            passed.push(corner(&last, None));
+        }
+        return Ok(passed);
+    }
     Ok(match [is_right(&edge.start), is_right(&edge.end)] {
         [true, true] => vec![
             corner(&edge.start, Some(arc.clone())),

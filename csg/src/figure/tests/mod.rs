@@ -204,3 +204,22 @@ fn a_hull_of_discs_and_points() {
     assert_eq!(Figure::convex_hull(&points[..2]), Err(FigureError::Empty));
     near(area(&[disc(1, 1, 2), disc(1, 1, 1)]), 4.0 * pi);
 }
+
+/// Where the arcs of a disc start decides nothing about its part on the right of the axis.
+#[test]
+fn the_right_of_a_disc_is_half_of_it() {
+    let quarter = |k: usize| [[1, 0], [0, 1], [-1, 0], [0, -1]][k % 4].map(Rational::from);
+    let turns = (0..4).map(|k| [quarter(k), quarter(k + 1)]);
+    let skew = [[3, 4], [-4, 3]].map(|row| row.map(|x| Rational::from(x) / Rational::from(5)));
+    for [u, v] in turns.chain([skew]) {
+        let [[a, b], [c, d]] = [u, v];
+        let map = PlaneMap {
+            matrix: [[a, c], [b, d]],
+            offset: [Rational::ZERO, Rational::from(7)],
+        };
+        let disc = Figure::disc(&Rational::from(2)).unwrap();
+        let turned = disc.mapped(&map).unwrap();
+        let right = turned.right_of_axis().unwrap().unwrap();
+        assert!((right.area() - 2.0 * std::f64::consts::PI).abs() < 1e-12);
+    }
+}

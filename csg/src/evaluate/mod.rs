@@ -51,6 +51,7 @@ mod near_cylinders;
 mod radial_order;
 mod region;
 mod relevance;
+mod result_box;
 mod section;
 mod split_curves;
 mod tangent_contacts;
@@ -68,6 +69,7 @@ use self::evaluation::Evaluated;
 use self::halfspaces::HalfSpaceModel;
 use self::membership::Membership;
 use self::relevance::CloseCallFilter;
+use self::result_box::size_below_vast;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
@@ -163,6 +165,9 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
 
 /// Evaluates in f64, and where that is inconclusive, in more and more bits.
 fn by_resolution(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
+    if let (None, Some(size)) = (options.resolution, size_below_vast(tree)) {
+        return beside_vast_tools(tree, options, size);
+    }
     let error = match evaluated::<f64>(tree, options) {
         Ok(mut known) => {
             known
@@ -189,6 +194,25 @@ fn by_resolution(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation,
         true => evaluated_in_more_bits::<F237>(tree, options).map(Evaluation::from),
         false => Err(error),
     }
+}
+
+/// Evaluates a part whose tools are far larger: with the resolution of the part, which f64 does not
+/// have for them.
+fn beside_vast_tools(
+    tree: &Tree,
+    options: &EvaluationOptions,
+    size: f64,
+) -> Result<Evaluation, EvaluationError> {
+    if !is_small(tree, FEW_IN_106_BITS) {
+        let far = HalfSpaceModel::<f64>::new(tree).bounds.diagonal();
+        return Err(EvaluationError::TooFarFromOrigin { far, size });
+    }
+    let relative = RELATIVE_RESOLUTION.max(options.noise.unwrap_or(0.0));
+    let fine = EvaluationOptions {
+        resolution: Some(relative * size),
+        ..*options
+    };
+    evaluated_in_more_bits::<F106>(tree, &fine).map(Evaluation::from)
 }
 
 /// The same boundary in 106 bits, where f64 gives its measures to less than the default resolution.

@@ -470,3 +470,24 @@ fn rounded_corners_of_hulls_are_about_common_axes() {
     let top = 108.0 * 58.0 + 332.0 * s + std::f64::consts::PI * s * s;
     assert!((known.mass().volume - (3.0 * mean + top)).abs() < 1e-6);
 }
+
+/// A cube of 1e10 stands for a half-space. The step of 0.01 is below 1e-11 of its size.
+#[test]
+fn vast_tools_do_not_coarsen_the_resolution() {
+    let vast = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { cube(size = [1e+10, 1e+10, 1e+10]); }";
+    let step = "cube(size = [2, 2, 1]); multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,1],[0,0,0,1]]) { \
+        cube(size = [1, 1, 0.01]); }";
+    let ball = "rotate_extrude(angle = 360, $fn = 60) { multmatrix([[0,1,0,0],[-1,0,0,0],[0,0,1,0],\
+        [0,0,0,1]]) { intersection() { circle(r = 50, $fn = 60); multmatrix([[1,0,0,-51],[0,1,0,0],\
+        [0,0,1,0],[0,0,0,1]]) { square(size = [102, 51]); } } } }";
+    let volume = |text: &str| {
+        let tree = csg(text);
+        let known =
+            crate::evaluate::evaluate(&tree, &crate::evaluate::EvaluationOptions::default());
+        known.unwrap().mass().volume
+    };
+    let clipped = |part: &str| volume(&format!("intersection() {{ union() {{ {part} }} {vast} }}"));
+    assert!((clipped(step) - 4.01).abs() < 1e-9);
+    let eighth = 50f64.powi(3) * std::f64::consts::PI / 6.0;
+    assert!((clipped(ball) - eighth).abs() < 1e-6);
+}

@@ -65,7 +65,7 @@ impl Glyph {
             |x: i32| to_f64(&Rational::from((Rational::from(x) * &self.scale).round())) as i32;
         let down = |x: i32| x.div_euclid(PIXEL) * PIXEL;
         let bounds = [lo.map(|x| down(scaled(x))), hi.map(|x| -down(-scaled(x)))];
-        let has_area = (0..2).all(|i| bounds[0][i] < bounds[1][i]);
+        let has_area = (0..2).all(|i| bounds[0][i] != bounds[1][i]);
         has_area.then_some(bounds)
     }
 

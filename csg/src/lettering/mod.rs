@@ -102,9 +102,8 @@ pub(crate) fn contours(
     font: &FontFile,
     style: &TextStyle<'_>,
 ) -> Result<Vec<GlyphContours>, LetteringError> {
-    let count = text.chars().count();
-    if count > MAX_CHARACTERS {
-        return Err(LetteringError::TooLong(count));
+    if text.chars().nth(MAX_CHARACTERS).is_some() {
+        return Err(LetteringError::TooLong(text.chars().count()));
     }
     let Some(em) = em(&style.size)? else {
         return Ok(Vec::new());

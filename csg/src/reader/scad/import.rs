@@ -77,7 +77,7 @@ pub(super) enum ImportFormat {
 
 impl ImportFormat {
     /// The format of a file, by its ending.
-    pub fn of(file: &str) -> Option<Self> {
+    pub fn from_path(file: &str) -> Option<Self> {
         let ending = Path::new(file).extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "dxf" => Some(Self::Drawing(DrawingFormat::Dxf)),

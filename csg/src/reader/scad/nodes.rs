@@ -243,7 +243,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
         ])?;
         let place = arguments.require("file")?.clone();
         let file = arguments.words("file")?;
-        let Some(format) = ImportFormat::of(file) else {
+        let Some(format) = ImportFormat::from_path(file) else {
             let found = format!("the file {}", quote(file));
             let expected = "a file of `dxf`, `svg`, `stl`, `off`, `obj`, `3mf` or `amf`";
             return Err(SpannedError::input(place.span.clone(), found, expected));

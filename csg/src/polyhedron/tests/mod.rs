@@ -17,6 +17,16 @@ fn cube() -> Vec<SpacePoint> {
     points(&(0..8).map(corner).collect::<Vec<_>>())
 }
 
+/// The faces of a cube whose corner `i` has the bits of `i` as coordinates.
+const CUBE_FACES: [[usize; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
+
 /// Six times the volume, in whole numbers.
 fn sixfold(polyhedron: &Polyhedron) -> f64 {
     to_f64(&polyhedron.sixfold_volume())
@@ -73,14 +83,7 @@ fn faces_turn_outwards() {
 fn faces_that_are_not_plane_are_triangulated() {
     let mut corners = cube();
     corners[7] = [2, 2, 3].map(Rational::from);
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
+    let faces = CUBE_FACES;
     let made = Polyhedron::from_faces(&corners, &faces.map(face)).unwrap();
     assert_eq!((made.triangulated, made.polyhedron.faces().len()), (1, 7));
 }

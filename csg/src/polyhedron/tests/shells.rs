@@ -23,15 +23,7 @@ impl Cubes {
             std::array::from_fn(|k| low[k] + size * at[k])
         });
         self.points.extend(points(&all.collect::<Vec<_>>()));
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        for quad in quads {
+        for quad in CUBE_FACES {
             let face = face(quad.map(|k| first + k));
             self.faces.push(match is_inward {
                 true => face.reversed(),

@@ -99,14 +99,7 @@ fn a_polyhedron_of_a_prism_is_the_prism() {
 #[test]
 fn coplanar_triangles_are_one_face() {
     let square = cube();
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
+    let faces = CUBE_FACES;
     let cut = |[a, b, c, d]: [usize; 4]| [face([a, b, c]), face([a, c, d])];
     let faces: Vec<PolyhedronFace> = faces.into_iter().flat_map(cut).collect();
     let made = Polyhedron::from_faces(&square, &faces).unwrap();

@@ -1,6 +1,7 @@
 //! `import` and `surface`: drawings, meshes and height fields of other programs.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -92,19 +93,20 @@ impl ImportFormat {
     }
 }
 
+/// The error of a file that is not what its node needs.
+fn bad_file(arguments: &Arguments, why: &dyn Display, expected: &str) -> SpannedError {
+    let file = arguments.words("file").unwrap_or_default();
+    let found = format!("the file {}", premio_text::escape::quote(file));
+    SpannedError::input(arguments.span.clone(), found, expected).help(why.to_string())
+}
+
 /// The polyhedra of a mesh, of which the union is meant.
 pub(super) fn mesh(
     format: MeshFormat,
     bytes: &[u8],
     arguments: &Arguments,
 ) -> Result<Vec<Polyhedron>, SpannedError> {
-    let wrong = |found: &dyn std::fmt::Display| {
-        SpannedError::input(
-            arguments.span.clone(),
-            found.to_string(),
-            "a mesh that bounds a solid",
-        )
-    };
+    let wrong = |why: &dyn Display| bad_file(arguments, why, "a mesh that bounds a solid");
     let options = MeshReadOptions {
         max_corners: MAX_CORNERS,
         placement: ObjectPlacement::AsWritten,
@@ -126,9 +128,7 @@ pub(super) fn surface(
     let is_picture = Path::new(file)
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    let wrong = |found: &dyn std::fmt::Display| {
-        SpannedError::input(arguments.span.clone(), found.to_string(), "a height field")
-    };
+    let wrong = |why: &dyn Display| bad_file(arguments, why, "a height field");
     let field = match is_picture {
         true => HeightField::from_png(bytes, arguments.flag("invert")?),
         false => HeightField::from_dat(bytes),
@@ -147,13 +147,8 @@ pub(super) fn drawing(
     notes: &mut Notes,
 ) -> Result<Option<Region>, SpannedError> {
     let span = arguments.span.clone();
-    let drawing = contents(format, bytes, arguments, rule)?.map_err(|error| {
-        SpannedError::input(
-            span.clone(),
-            error.to_string(),
-            "a drawing that can be read",
-        )
-    })?;
+    let drawing = contents(format, bytes, arguments, rule)?;
+    let drawing = drawing.map_err(|error| bad_file(arguments, &error, "a drawing"))?;
     remark(&drawing, arguments, notes);
     match drawing_file::figure(&drawing) {
         Ok(figure) => Ok(Some(Region::new(figure, span))),

@@ -9,6 +9,7 @@
 //! | `figures` | plane figures |
 //! | `import` | the contents of other files |
 //! | `region` | set operations on these |
+//! | `resize` | new sizes as factors |
 //! | `shapes` | solids |
 //! | `slices` | how many slices an extrusion has |
 //! | `text` | the figures of texts |
@@ -27,6 +28,7 @@ mod measures;
 mod nodes;
 mod refusal;
 mod region;
+mod resize;
 mod shapes;
 mod slices;
 mod sweep;

@@ -3,14 +3,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use premio_kernel::number::rational::{Rational, from_decimal, to_f64};
+use premio_kernel::number::rational::Rational;
 
 use super::super::ReadOptions;
 use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Lexeme};
 use super::super::notes::Notes;
 use super::SIX_DIGITS;
-use super::arguments::{Argument, Arguments, Value};
+use super::arguments::Arguments;
 use super::facets::FacetRule;
 use super::figures::{self, bad_figure};
 use super::import::{self, ImportFormat, ImportedFiles};
@@ -18,6 +18,7 @@ use super::matrix::Matrix;
 use super::measures::{Shape, remark_negative};
 use super::refusal::construction_error;
 use super::region::Region;
+use super::resize;
 use super::shapes;
 use super::sweep::{Raise, Spin, operation};
 use super::syntax::{ScadFile, ScadNode};
@@ -485,8 +486,8 @@ impl<'c, 'a> Evaluator<'c, 'a> {
     ) -> Result<Geometry, SpannedError> {
         arguments.bind(&["newsize", "auto"])?;
         let span = arguments.span.clone();
-        let sizes = numbers(arguments.require("newsize")?)?;
-        let auto = flags(arguments)?;
+        let sizes = resize::sizes(arguments)?;
+        let auto = resize::automatic(arguments)?;
         match self.combined(FigureOperation::Union, children)? {
             Geometry::Nothing => Ok(Geometry::Nothing),
             Geometry::Plane(region) => {
@@ -494,7 +495,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                     return Ok(Geometry::Nothing);
                 };
                 let [lo, hi] = figure.bounds();
-                let [x, y, _] = factors(&sizes, &auto, &[hi[0] - lo[0], hi[1] - lo[1]]);
+                let [x, y, _] = resize::factors(&sizes, &auto, &[hi[0] - lo[0], hi[1] - lo[1]]);
                 let map = PlaneMap {
                     matrix: [[x, Rational::ZERO], [Rational::ZERO, y]],
                     ..PlaneMap::identity()
@@ -507,61 +508,12 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                     Ok(None) => return Ok(Geometry::Nothing),
                     Err(error) => return Err(construction_error(&error, &span)),
                 };
-                let map = AffineMap::scale(&factors(&sizes, &auto, &extent));
+                let map = AffineMap::scale(&resize::factors(&sizes, &auto, &extent));
                 let image = mapped(&mut self.builder, part, &map);
                 constructed(image, &span).map(solid)
             }
         }
     }
-}
-
-/// The numbers of a list of up to three, filled up with zeros.
-fn numbers(argument: &Argument) -> Result<[Rational; 3], SpannedError> {
-    let items = argument.items("a list of up to three numbers")?;
-    let mut all: [Rational; 3] = Default::default();
-    for (x, item) in all.iter_mut().zip(items) {
-        *x = item.number()?.clone();
-    }
-    Ok(all)
-}
-
-/// The flags of `auto`: one for all axes, or one each.
-fn flags(arguments: &Arguments) -> Result<[bool; 3], SpannedError> {
-    let Some(argument) = arguments.find("auto") else {
-        return Ok([false; 3]);
-    };
-    let mut all = [false; 3];
-    match &argument.value {
-        Value::List(items) => {
-            for (flag, item) in all.iter_mut().zip(items) {
-                *flag = match &item.value {
-                    Value::Number(number) => !number.is_zero(),
-                    _ => item.bool()?,
-                };
-            }
-        }
-        _ => all = [argument.bool()?; 3],
-    }
-    Ok(all)
-}
-
-/// The factors that give a box new sizes. A size of zero keeps the axis, or with `auto` scales it
-/// as the axis that grows most.
-fn factors(sizes: &[Rational; 3], auto: &[bool; 3], extent: &[f64]) -> [Rational; 3] {
-    let own = |i: usize| {
-        // The size is rounded to its digits, so that equal ones are equal.
-        let size = extent.get(i).copied().filter(|x| *x > 0.0);
-        let size = size.and_then(|x| from_decimal(&format!("{x:.11e}")).ok());
-        let size = size.filter(|_| !sizes[i].is_zero());
-        size.map(|size| &sizes[i] / size)
-    };
-    let most = (0..3)
-        .filter_map(own)
-        .max_by(|a, b| to_f64(a).total_cmp(&to_f64(b)));
-    std::array::from_fn(|i| {
-        let automatic = most.clone().filter(|_| auto[i] && sizes[i].is_zero());
-        own(i).or(automatic).unwrap_or(Rational::ONE)
-    })
 }
 
 fn solid(part: Option<SolidId>) -> Geometry {

@@ -88,6 +88,14 @@ fn chords(edge: &FigureEdge, arguments: &Arguments) -> Result<Vec<FigurePoint>, 
     Ok(points)
 }
 
+/// Whether a polygon runs clockwise.
+fn is_clockwise(outline: &[FigurePoint]) -> bool {
+    let next = outline.iter().cycle().skip(1);
+    let doubled = outline.iter().zip(next);
+    let doubled = doubled.map(|(p, q)| &p[0] * &q[1] - &p[1] * &q[0]);
+    doubled.fold(Rational::ZERO, |sum, x| sum + x) < Rational::ZERO
+}
+
 /// How the sides between two slices, which are not plane, are cut into triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SideDiagonal {
@@ -98,16 +106,43 @@ pub(super) enum SideDiagonal {
 }
 
 impl SideDiagonal {
-    /// Whether the side with the lower corners `a`, `b` and the upper corners `d`, `c` above them is
-    /// cut from `a` to `c`.
-    fn is_downward(self, [a, b, c, d]: [&SpacePoint; 4], is_flat: bool) -> bool {
-        match self {
-            Self::Upward => false,
-            // Where the top has no width, the other cut would enclose nothing.
-            Self::Shorter if is_flat => squared(b, d) < squared(a, c),
-            Self::Shorter => squared(a, c) < squared(b, d),
+    /// Whether a side is cut from its lower start to its upper end.
+    fn is_downward(self, side: &Side<'_>) -> bool {
+        let Side {
+            corners,
+            is_hole,
+            is_flat,
+        } = *side;
+        let [a, b, c, d] = corners;
+        if self == Self::Upward {
+            return false;
         }
+        let [own, other] = [[a, c], [b, d]].map(|[p, q]| to_f64(&squared(p, q)));
+        if (own - other).abs() <= f64::EPSILON.sqrt() * own.max(other) {
+            // Equal diagonals: OpenSCAD takes the one that bulges the region inside the contour.
+            return (bulge([a, b, c, d]) > Rational::ZERO) != is_hole;
+        }
+        // Where the top has no width, the shorter one would enclose nothing.
+        (own < other) != is_flat
     }
+}
+
+/// A side between two slices.
+struct Side<'a> {
+    /// Its lower start and end, and the points above the end and the start.
+    corners: [&'a SpacePoint; 4],
+    /// Whether its contour bounds a hole.
+    is_hole: bool,
+    /// Whether the top has no width.
+    is_flat: bool,
+}
+
+/// How much farther to the right of a side the middle of the diagonal from its lower start is than
+/// that of the other one, in any unit.
+fn bulge([a, b, c, d]: [&SpacePoint; 4]) -> Rational {
+    let ahead: [Rational; 2] = std::array::from_fn(|i| &b[i] - &a[i] + &c[i] - &d[i]);
+    let apart: [Rational; 2] = std::array::from_fn(|i| &a[i] + &c[i] - &b[i] - &d[i]);
+    &apart[0] * &ahead[1] - &apart[1] * &ahead[0]
 }
 
 /// The squared distance of two points.
@@ -154,15 +189,20 @@ pub(super) fn twisted(
     let mut faces = Vec::new();
     let loops = index_loops(outlines.iter().map(Vec::len));
     let has_flat_top = top.iter().any(Rational::is_zero);
-    for corners in &loops {
+    for (corners, outline) in loops.iter().zip(&outlines) {
+        let is_hole = is_clockwise(outline);
         for slice in 0..slices {
             let is_flat = has_flat_top && slice + 1 == slices;
             let next = corners.iter().cycle().skip(1);
             for (&i, &j) in corners.iter().zip(next) {
                 let [a, b] = [i, j].map(|k| k + slice * count);
                 let [d, c] = [a, b].map(|k| k + count);
-                let side = [a, b, c, d].map(|k| &points[k]);
-                let triangles = match diagonal.is_downward(side, is_flat) {
+                let side = Side {
+                    corners: [a, b, c, d].map(|k| &points[k]),
+                    is_hole,
+                    is_flat,
+                };
+                let triangles = match diagonal.is_downward(&side) {
                     true => [vec![a, b, c], vec![a, c, d]],
                     false => [vec![a, b, d], vec![b, c, d]],
                 };

@@ -270,6 +270,31 @@ fn comments_texts_and_blocks_without_braces() {
     assert_eq!(tree.leaves().count(), 2);
 }
 
+/// A square with a corner on the axis has sides of which both diagonals are equally long, and a hole
+/// with such a corner, too. The volumes are those of OpenSCAD 2021.01, from coordinates of six digits.
+#[test]
+fn equal_diagonals_bulge_the_inside_of_their_contour() {
+    let square = "square(size = [20, 20]);";
+    let holed = "difference() { square(size = [20, 20], center = true); \
+        polygon(points = [[0, 0], [5, 0], [5, 5], [0, 5]]); }";
+    let options = ReadOptions {
+        facets: FacetLimit::All,
+        ..ReadOptions::default()
+    };
+    for (figure, volume) in [(square, 4067.955), (holed, 3813.7196)] {
+        for twist in [3, -3] {
+            let text = format!("linear_extrude(height = 10, twist = {twist}) {{ {figure} }}");
+            let tree = read("part", text.as_bytes(), Format::Csg, &options)
+                .unwrap()
+                .tree;
+            let known =
+                crate::evaluate::evaluate(&tree, &crate::evaluate::EvaluationOptions::default());
+            let found = known.unwrap().mass().volume;
+            assert!((found - volume).abs() < 2e-2, "{figure} {twist}: {found}");
+        }
+    }
+}
+
 /// The numbers of slices and the volumes are those of OpenSCAD 2021.01.
 #[test]
 fn extrusions_have_the_slices_of_openscad() {

@@ -25,6 +25,7 @@ from step import shape_in
 
 # OpenCASCADE leaves pieces visible that ray casting on the tree finds hidden.
 FALSE = "pieces behind a face are left visible; ray casting on the tree finds them hidden"
+LOST = "an edge of a convex polyhedron is missing; the sum over its visible faces agrees with ours"
 CLOSE = "edges closer to each other than its tolerance"
 KNOWN = {
     "apex-and-edge-touching": FALSE,
@@ -36,6 +37,7 @@ KNOWN = {
     "example019.csg": FALSE,
     "loop-of-one-edge-through-an-apex": FALSE,
     "own-cone-in-cyl--1e-7": CLOSE,
+    "sphere-tests.csg": LOST,
 }
 # Directions to the eye; z is up.
 VIEWS = [(0.3, -0.8, 0.52), (0.71, 0.2, 0.67), (-0.5, 0.6, -0.62)]

@@ -10,7 +10,7 @@ use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
 use super::split_curves::Later;
-use super::vertices::VertexMerger;
+use super::vertices::{CornerIndex, VertexMerger};
 use crate::tree::Tree;
 use premio_kernel::geometry::bounds::{Aabb, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
@@ -72,8 +72,9 @@ pub(super) fn arrange<'t, N: Float>(
     found.calls.append(&mut later.calls);
     // The most accurate come first; the others are moved to them.
     later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+    let mut index = CornerIndex::new(&corners.all);
     for w in &later.wide {
-        found.place_wide(w, predicates, &mut corners);
+        found.place_wide(w, predicates, &mut corners, &mut index);
     }
     found.calls.append(&mut corners.calls);
     found.corners = corners.all;

@@ -5,7 +5,7 @@ use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pas
 use super::close_calls::{Between, Unlisted};
 use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
-use super::vertices::VertexMerger;
+use super::vertices::{CornerIndex, VertexMerger};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::Curve;
@@ -119,23 +119,13 @@ impl<N: Float> Arrangement<N> {
         w: &Wide<N>,
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
+        index: &mut CornerIndex,
     ) {
         let m = &self.meetings[w.meeting];
         let all = [m.carriers[0], m.carriers[1], w.carrier];
         let middle = m.curve.point(w.t);
-        // Rounded distances leave few corners for those of all bits.
-        let near = rounded(&middle);
-        let rounding = near.iter().fold(0.0f64, |most, x| most.max(x.abs())) * f64::EPSILON;
-        let bound = 2.0 * w.reach.rounded() + 4.0 * rounding;
-        let is_near = |p: &Point3<N>| {
-            let pairs = rounded(p).into_iter().zip(near);
-            pairs.into_iter().all(|(x, y)| (x - y).is_within(bound))
-        };
         let fits = |v: &usize| {
             let p = corners.all[*v].point;
-            if !is_near(&p) {
-                return false;
-            }
             (p - middle).length().is_within(w.reach)
                 && all
                     .iter()
@@ -143,9 +133,8 @@ impl<N: Float> Arrangement<N> {
                 && predicates.within((m.curve.point(m.curve.parameter(&p)) - p).length())
         };
         let away = |v: &usize| (corners.all[*v].point - middle).length();
-        let best = (0..corners.all.len())
-            .filter(fits)
-            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        let near = index.near(&middle, w.reach).into_iter();
+        let best = near.filter(fits).min_by(|a, b| away(a).total_cmp(&away(b)));
         let (t, vertex) = match best {
             Some(v) => {
                 let p = corners.all[v].point;
@@ -159,6 +148,7 @@ impl<N: Float> Arrangement<N> {
             }
             None => (w.t, corners.at(&middle, &all, predicates)),
         };
+        index.extend(&corners.all);
         self.meetings[w.meeting].cuts.push(Cut { t, vertex });
     }
 

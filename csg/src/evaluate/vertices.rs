@@ -2,9 +2,12 @@
 
 use super::close_calls::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 use std::collections::HashMap;
 
 /// A point at which a curve is split.
@@ -124,5 +127,43 @@ impl<N: Float> VertexMerger<N> {
             }
         }
         best.filter(|b| b.distance.is_short_of(reach))
+    }
+}
+
+/// A spatial index of corners.
+pub(super) struct CornerIndex {
+    tree: RTree<GeomWithData<[f64; 3], usize>>,
+}
+
+impl CornerIndex {
+    /// The index of some corners.
+    pub fn new<N: Float>(corners: &[VertexCandidate<N>]) -> Self {
+        let points = corners.iter().enumerate();
+        let points = points.map(|(i, corner)| GeomWithData::new(rounded(&corner.point), i));
+        Self {
+            tree: RTree::bulk_load(points.collect()),
+        }
+    }
+
+    /// Adds the corners that were found since.
+    pub fn extend<N: Float>(&mut self, corners: &[VertexCandidate<N>]) {
+        for (i, corner) in corners.iter().enumerate().skip(self.tree.size()) {
+            let point = rounded(&corner.point);
+            self.tree.insert(GeomWithData::new(point, i));
+        }
+    }
+
+    /// The corners within a distance of a point, and some beyond it, in increasing order.
+    pub fn near<N: Float>(&self, p: &Point3<N>, reach: N) -> Vec<usize> {
+        let around = Aabb::new(p).grown(reach);
+        // The points of the index are rounded.
+        let rounding = around.min.iter().chain(&around.max);
+        let rounding = rounding.fold(0.0f64, |most, x| most.max(x.abs())) * f64::EPSILON;
+        let around = around.grown(rounding);
+        let around = AABB::from_corners(around.min, around.max);
+        let near = self.tree.locate_in_envelope(around);
+        let mut near: Vec<usize> = near.map(|point| point.data).collect();
+        near.sort_unstable();
+        near
     }
 }

@@ -41,6 +41,8 @@ enum Integrals {
     DoubleDoubles(Box<WideBoundary<F106>>),
     /// 237 bits: the same.
     Extended(Box<WideBoundary<F237>>),
+    /// Components that were evaluated by themselves.
+    Components(Vec<Evaluation>),
 }
 
 /// A boundary in more bits than those of f64, and its integrals.
@@ -84,6 +86,31 @@ impl Evaluation {
         coincident.fold(0.0, f64::max)
     }
 
+    /// The boundary of components that are apart. The resolution is the coarsest of theirs.
+    pub(super) fn joined(components: Vec<Self>) -> Self {
+        let mut brep = Brep::default();
+        let mut decisions = DecisionStats::default();
+        for component in &components {
+            brep.append(&component.brep);
+            decisions.add(&component.decisions);
+        }
+        let coarsest = |resolutions: &mut dyn Iterator<Item = f64>| resolutions.fold(0.0, f64::max);
+        let view_resolutions: Option<Vec<f64>> = components
+            .iter()
+            .map(|known| known.view_resolution)
+            .collect();
+        let boxes = components.iter().map(|known| known.bounds);
+        Self {
+            brep,
+            decisions,
+            resolution: coarsest(&mut components.iter().map(|known| known.resolution)),
+            bounds: boxes.fold(Aabb::EMPTY, |all, own| all.hull(&own)),
+            view_resolution: view_resolutions.map(|all| coarsest(&mut all.into_iter())),
+            mass: OnceLock::new(),
+            integrals: Integrals::Components(components),
+        }
+    }
+
     /// The same boundary with the measures of an evaluation in more bits.
     pub(super) fn measured_by(self, fine: Evaluated<F106>) -> Self {
         Self {
@@ -98,6 +125,9 @@ impl Evaluation {
             Integrals::Doubles(measures) => measures.mass(&self.brep),
             Integrals::DoubleDoubles(wide) => wide.measures.mass(&wide.brep),
             Integrals::Extended(wide) => wide.measures.mass(&wide.brep),
+            Integrals::Components(all) => {
+                Mass::sum(&all.iter().map(Self::mass).collect::<Vec<_>>())
+            }
         })
     }
 
@@ -107,6 +137,10 @@ impl Evaluation {
             Integrals::Doubles(_) => bounds(&self.brep),
             Integrals::DoubleDoubles(wide) => bounds(&wide.brep),
             Integrals::Extended(wide) => bounds(&wide.brep),
+            Integrals::Components(all) => {
+                let boxes = all.iter().map(Self::tight_bounds);
+                boxes.fold(Aabb::EMPTY, |all, own| all.hull(&own))
+            }
         }
     }
 
@@ -116,6 +150,16 @@ impl Evaluation {
             Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
             Integrals::DoubleDoubles(wide) => wide.violations(self.resolution),
             Integrals::Extended(wide) => wide.violations(self.resolution),
+            Integrals::Components(all) => {
+                let mut found = Vec::new();
+                let mut joined = Brep::default();
+                for component in all {
+                    let ids = joined.append(&component.brep);
+                    let own = component.violations();
+                    found.extend(own.into_iter().map(|violation| violation.renumbered(&ids)));
+                }
+                found
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
-//! A box around the result of a tree, which tools far larger than the part do not widen.
+//! Boxes around the result of every node of a tree, which tools far larger than the part do not
+//! widen.
 
 use super::halfspaces::HalfSpaceModel;
-use crate::tree::{Operation, Tree, TreeNode};
+use crate::tree::{NodeId, Operation, Tree, TreeNode};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::Compare;
 
@@ -9,29 +10,57 @@ use premio_kernel::number::predicates::Compare;
 /// result: a cube of 1e10 that stands for a half-space.
 const VAST: f64 = 4096.0;
 
-/// The size of a tree's result, if its primitives are far larger.
-pub(super) fn size_below_vast(tree: &Tree) -> Option<f64> {
-    let model = HalfSpaceModel::<f64>::new(tree);
-    let mut leaves = model.all.iter().map(|solid| solid.bounds).rev();
-    let mut boxes = vec![Aabb::EMPTY; tree.nodes.len()];
-    // A parent comes before its children.
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        boxes[index] = match node {
-            TreeNode::Leaf(_) => leaves.next()?,
-            TreeNode::Operation { op, children } => {
-                let mut own = children.iter().map(|child| boxes[child.0]);
-                match op {
-                    Operation::Union => own.fold(Aabb::EMPTY, |all, b| all.hull(&b)),
-                    Operation::Intersection => own.fold(Aabb::ALL, common),
-                    Operation::Difference => own.next()?,
+/// Boxes around the results of a tree's nodes.
+#[derive(Debug)]
+pub(super) struct ResultBoxes {
+    /// The box of each node's result.
+    boxes: Vec<Aabb>,
+    /// The box of the whole result.
+    pub whole: Aabb,
+    /// The box of all primitives.
+    pub primitives: Aabb,
+}
+
+impl ResultBoxes {
+    /// The boxes of a tree.
+    pub fn new(tree: &Tree) -> Self {
+        let model = HalfSpaceModel::<f64>::new(tree);
+        let mut leaves = model.all.iter().map(|solid| solid.bounds).rev();
+        let mut boxes = vec![Aabb::EMPTY; tree.nodes.len()];
+        // A parent comes before its children.
+        for (index, node) in tree.nodes.iter().enumerate().rev() {
+            boxes[index] = match node {
+                TreeNode::Leaf(_) => leaves.next().unwrap_or(Aabb::EMPTY),
+                TreeNode::Operation { op, children } => {
+                    let mut own = children.iter().map(|child| boxes[child.0]);
+                    match op {
+                        Operation::Union => own.fold(Aabb::EMPTY, |all, b| all.hull(&b)),
+                        Operation::Intersection => own.fold(Aabb::ALL, common),
+                        Operation::Difference => own.next().unwrap_or(Aabb::EMPTY),
+                    }
                 }
-            }
-        };
+            };
+        }
+        let whole = tree.root.map_or(Aabb::EMPTY, |root| boxes[root.0]);
+        Self {
+            boxes,
+            whole,
+            primitives: model.bounds,
+        }
     }
-    let result = boxes[tree.root?.0];
-    let is_bounded = (0..3).all(|i| !result.min[i].is_beyond(result.max[i]));
-    let (size, all) = (result.diagonal(), model.bounds.diagonal());
-    (is_bounded && size.is_beyond(0.0) && all.is_beyond(VAST * size)).then_some(size)
+
+    /// The box around the result of a node.
+    pub fn of_node(&self, node: NodeId) -> Aabb {
+        self.boxes[node.0]
+    }
+
+    /// The size of the result, if the primitives are far larger.
+    pub fn size_below_vast(&self) -> Option<f64> {
+        let Aabb { min, max } = self.whole;
+        let is_bounded = (0..3).all(|i| !min[i].is_beyond(max[i]));
+        let (size, all) = (self.whole.diagonal(), self.primitives.diagonal());
+        (is_bounded && size.is_beyond(0.0) && all.is_beyond(VAST * size)).then_some(size)
+    }
 }
 
 /// The points that two boxes have in common.

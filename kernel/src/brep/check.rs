@@ -2,6 +2,7 @@
 
 use super::Brep;
 use super::cycle_basis;
+use super::disjoint_union::Renumbering;
 use super::end_gaps::{EndGap, gaps_at_ends};
 use super::face_integrals::{FaceArea, FaceIntegrals};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
@@ -87,6 +88,58 @@ pub enum Violation {
         /// The signed volume, in cubic units.
         volume: f64,
     },
+}
+
+impl Violation {
+    /// The same violation in a boundary to which the entities were appended.
+    pub fn renumbered(self, ids: &Renumbering) -> Self {
+        match self {
+            Self::LoopOpen { ring, after } => Self::LoopOpen {
+                ring: ids.ring(ring),
+                after: ids.coedge(after),
+            },
+            Self::LoopNoCycle { ring } => Self::LoopNoCycle {
+                ring: ids.ring(ring),
+            },
+            Self::EdgeUse { edge } => Self::EdgeUse {
+                edge: ids.edge(edge),
+            },
+            Self::EdgeEnd {
+                edge,
+                vertex,
+                distance,
+            } => Self::EdgeEnd {
+                edge: ids.edge(edge),
+                vertex: ids.vertex(vertex),
+                distance,
+            },
+            Self::EdgeOffFace {
+                edge,
+                face,
+                distance,
+            } => Self::EdgeOffFace {
+                edge: ids.edge(edge),
+                face: ids.face(face),
+                distance,
+            },
+            Self::TouchOff { touch, distance } => Self::TouchOff {
+                touch: ids.touch(touch),
+                distance,
+            },
+            Self::Euler { shell, euler } => Self::Euler {
+                shell: ids.shell(shell),
+                euler,
+            },
+            Self::Area { face, area } => Self::Area {
+                face: ids.face(face),
+                area,
+            },
+            Self::Orientation { shell, volume } => Self::Orientation {
+                shell: ids.shell(shell),
+                volume,
+            },
+        }
+    }
 }
 
 /// The multiple of the resolution by which an edge may miss its faces and its vertices. The edge

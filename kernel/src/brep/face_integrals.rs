@@ -33,6 +33,25 @@ pub struct Mass {
     pub centroid: Point3<f64>,
 }
 
+impl Mass {
+    /// The mass properties of bodies that have no point in common.
+    pub fn sum(bodies: &[Self]) -> Self {
+        let volume = bodies.iter().map(|body| body.volume).sum::<f64>();
+        let first = bodies.iter().map(|body| body.centroid.coords * body.volume);
+        let first = first.sum::<Vector3<f64>>();
+        Self {
+            volume,
+            area: bodies.iter().map(|body| body.area).sum(),
+            centroid: match volume.is_exactly(0.0) {
+                true => bodies
+                    .first()
+                    .map_or(Point3::origin(), |body| body.centroid),
+                false => (first / volume).into(),
+            },
+        }
+    }
+}
+
 /// ∫ dA, ∫ h dA and ∫ h P dA over a face.
 type Moments<N> = [N; 5];
 

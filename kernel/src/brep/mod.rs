@@ -12,6 +12,7 @@ pub mod boundary_input;
 pub mod bounding_box;
 pub mod check;
 mod cycle_basis;
+pub mod disjoint_union;
 mod end_gaps;
 pub mod face_integrals;
 pub mod locate;
@@ -32,9 +33,9 @@ use topology::{EdgeId, FaceId, Sense, Topology, VertexId};
 /// The geometry of the entities, indexed by their ids.
 #[derive(Clone, Debug, Default)]
 pub struct BrepGeometry<N: Float = f64> {
-    /// The distinct surfaces that have a face.
+    /// The surfaces that have a face, distinct within each of the bodies that were joined.
     pub surfaces: Vec<Surface<N>>,
-    /// The distinct curves that have an edge.
+    /// The curves that have an edge, distinct in the same way.
     pub curves: Vec<Curve<N>>,
     /// The location of each vertex, by [`VertexId`].
     pub points: Vec<Point3<N>>,

@@ -106,3 +106,14 @@ pub struct DecisionStats {
     /// Decisions within a factor of 100 of the resolution, in order of occurrence.
     pub close_calls: Vec<CloseCall>,
 }
+
+impl DecisionStats {
+    /// Adds the decisions of another evaluation, after these.
+    pub fn add(&mut self, other: &Self) {
+        self.filtered += other.filtered;
+        self.refined += other.refined;
+        self.exact += other.exact;
+        self.coincident += other.coincident;
+        self.close_calls.extend_from_slice(&other.close_calls);
+    }
+}

@@ -59,6 +59,12 @@ fn by_resolution(tree: &Tree, settings: &Settings) -> Result<Evaluation, Evaluat
         Err(error) if error.is_of_rounding() => error,
         known => return known,
     };
+    // Merging within the noise contradicts itself where surfaces meet at small angles.
+    let is_noisy = settings.noise.is_above_zero();
+    let settings = &settings.without_noise();
+    if let Some(Ok(known)) = is_noisy.then(|| in_f64(tree, settings)) {
+        return Ok(known);
+    }
     let error = match is_worth_more_bits(&error, tree, FEW_IN_106_BITS) {
         true => match evaluated_in_more_bits::<F106>(tree, settings) {
             Ok(known) => return Ok(known.into()),
@@ -183,4 +189,35 @@ fn evaluated_at_finest<N: Float>(
 ) -> Result<Evaluated<N>, EvaluationError> {
     let size = HalfSpaceModel::<N>::new(tree).bounds.diagonal();
     evaluated::<N>(tree, &settings.with_resolution(N::FINEST_RESOLUTION * size))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use crate::evaluate::{EvaluationOptions, evaluate};
+    use crate::reader::{Format, ReadOptions, read};
+    use approx::assert_relative_eq;
+
+    /// A needle whose sides meet at angles below 0.01, turned by a matrix of six digits.
+    const NEEDLE: &str = "linear_extrude(height = 1) {
+        multmatrix([[0.998478, 0.0551532, 0, 0], [-0.0551532, 0.998478, 0, 0], [0, 0, 1, 0],
+                [0, 0, 0, 1]]) {
+            polygon(points = [[0, 0], [-11.2534, 34.9259], [-11.2446, 34.8927],
+                [-11.2073, 34.7516]]);
+        }
+    }";
+
+    #[test]
+    fn where_merging_within_the_noise_contradicts_itself_f64_does_without() {
+        let read = read("", NEEDLE.as_bytes(), Format::Csg, &ReadOptions::default()).unwrap();
+        let options = EvaluationOptions {
+            noise: read.digits,
+            ..EvaluationOptions::default()
+        };
+        assert!(options.noise.is_some());
+        let known = evaluate(&read.tree, &options).unwrap();
+        assert_eq!(known.decisions.refined, 0, "f64 is enough");
+        // The shoelace formula.
+        assert_relative_eq!(known.mass().volume, 0.175690155, max_relative = 1e-9);
+    }
 }

@@ -43,6 +43,14 @@ impl Settings {
         }
     }
 
+    /// The same for coordinates that are exact.
+    pub fn without_noise(&self) -> Self {
+        Self {
+            noise: 0.0,
+            ..*self
+        }
+    }
+
     /// The resolution where none is requested and the part is near the origin.
     pub fn default_resolution(&self) -> f64 {
         RELATIVE_RESOLUTION.max(self.noise) * self.size

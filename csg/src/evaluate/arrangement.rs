@@ -2,12 +2,13 @@
 
 use super::close_calls::Unlisted;
 use super::distinct_surfaces::CarrierSide;
+use super::face_hulls::FaceHull;
 use super::vertices::VertexCandidate;
 use premio_kernel::geometry::bounds::{Aabb, CurvePiece};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::Compare;
+use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 
@@ -35,6 +36,8 @@ pub(super) struct IntersectionCurve<N: Float = f64> {
     pub tangent: Vec<[usize; 2]>,
     /// Its bounding box.
     pub bounds: Aabb,
+    /// The boxes in which the faces of both carriers lie, or one around them all.
+    pub regions: Vec<Aabb>,
     /// Its smooth pieces with their boxes, in order.
     pub parts: Vec<CurvePiece<N>>,
     /// The points at which it is split, in order.
@@ -42,6 +45,17 @@ pub(super) struct IntersectionCurve<N: Float = f64> {
 }
 
 impl<N: Float> IntersectionCurve<N> {
+    /// Whether the curve may come near a face with this hull.
+    pub fn is_near(&self, hull: Option<&FaceHull>, predicates: &Predicates) -> bool {
+        match (&self.curve, hull) {
+            (Curve::Line(line), Some(hull)) => {
+                let reach = predicates.reach::<f64>();
+                hull.along(line, self.range, reach).is_some()
+            }
+            _ => true,
+        }
+    }
+
     /// Sorts the cuts and removes duplicates. The first cut of a closed curve may occur at its end,
     /// too.
     pub fn order_cuts(&mut self) {

@@ -8,6 +8,7 @@ use super::arrangement::{Arrangement, Cut, IntersectionCurve, SolidTree, common}
 use super::close_calls::{Between, Unlisted};
 use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
+use super::face_hulls::FaceHull;
 use super::halfspaces::HalfSpaceModel;
 use super::split_curves::Later;
 use super::vertices::{CornerIndex, VertexMerger};
@@ -109,17 +110,35 @@ fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
     }
 }
 
-type Pairs = BTreeMap<[usize; 2], Vec<Aabb>>;
+/// Two faces that may intersect.
+pub(super) struct FacePair<'s> {
+    /// The intersection of their boxes.
+    bounds: Aabb,
+    /// Their hulls.
+    hulls: [Option<&'s FaceHull>; 2],
+}
+
+impl FacePair<'_> {
+    /// The part of a line that runs near both faces.
+    fn along<N: Float>(&self, line: &Line<N>, range: [N; 2], reach: N) -> Option<[N; 2]> {
+        let range = self.bounds.along(line, range)?;
+        let mut hulls = self.hulls.into_iter().flatten();
+        hulls.try_fold(range, |range, hull| hull.along(line, range, reach.above()))
+    }
+}
+
+/// The pairs of faces by their carriers.
+type Pairs<'s> = BTreeMap<[usize; 2], Vec<FacePair<'s>>>;
 
 impl<N: Float> Arrangement<N> {
     /// The pairs of carriers whose faces' boxes intersect, with the intersections of these boxes.
     /// Of several equal solids one is used.
-    fn pairs(
+    fn pairs<'s>(
         &self,
-        solids: &HalfSpaceModel<N>,
+        solids: &'s HalfSpaceModel<N>,
         reach: N,
         most: usize,
-    ) -> Result<Pairs, EvaluationError> {
+    ) -> Result<Pairs<'s>, EvaluationError> {
         let mut pairs = Pairs::new();
         let mut known = HashSet::new();
         let is_new = |i: &usize| {
@@ -146,13 +165,13 @@ impl<N: Float> Arrangement<N> {
     }
 
     /// Adds the pairs of two solids, and returns their number.
-    fn add_pairs_of(
+    fn add_pairs_of<'s>(
         &self,
-        solids: &HalfSpaceModel<N>,
+        solids: &'s HalfSpaceModel<N>,
         i: usize,
         j: usize,
         reach: N,
-        pairs: &mut Pairs,
+        pairs: &mut Pairs<'s>,
     ) -> usize {
         let mut added = 0;
         let (s, o) = (&solids.all[i], &solids.all[j]);
@@ -164,10 +183,18 @@ impl<N: Float> Arrangement<N> {
                 if c == d || (i == j && k >= l) {
                     continue;
                 }
-                if let Some(shared) = common(&box_a, &b.bounds.grown(reach)) {
-                    pairs.entry([c.min(d), c.max(d)]).or_default().push(shared);
-                    added += 1;
+                let Some(bounds) = common(&box_a, &b.bounds.grown(reach)) else {
+                    continue;
+                };
+                let hulls = [a, b].map(|side| side.hull.as_ref());
+                if let [Some(hull), Some(other)] = hulls
+                    && hull.is_apart(other, reach.above())
+                {
+                    continue;
                 }
+                let pair = FacePair { bounds, hulls };
+                pairs.entry([c.min(d), c.max(d)]).or_default().push(pair);
+                added += 1;
             }
         }
         added
@@ -176,7 +203,7 @@ impl<N: Float> Arrangement<N> {
     fn add_pair(
         &mut self,
         [a, b]: [usize; 2],
-        supports: &[Aabb],
+        supports: &[FacePair<'_>],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
         predicates: &Predicates,
@@ -200,7 +227,7 @@ impl<N: Float> Arrangement<N> {
             kept.push(self.add_branch(a, b, branch, supports, predicates));
         }
         for node in &found.nodes {
-            if node.on.is_empty() && !supports.iter().any(|s| s.contains(&node.point)) {
+            if node.on.is_empty() && !supports.iter().any(|s| s.bounds.contains(&node.point)) {
                 continue;
             }
             let vertex = corners.at(&node.point, &[a, b], predicates);
@@ -224,22 +251,25 @@ impl<N: Float> Arrangement<N> {
         a: usize,
         b: usize,
         branch: &Branch<N>,
-        supports: &[Aabb],
+        supports: &[FacePair<'_>],
         predicates: &Predicates,
     ) -> Vec<usize> {
         let ranges = match &branch.curve {
-            Curve::Line(line) => clipped(line, branch.range, supports),
+            Curve::Line(line) => clipped(line, branch.range, supports, predicates),
             _ => vec![branch.range],
         };
         let mut kept = Vec::new();
         for range in ranges {
             let parts = pieces(&branch.curve, range);
             let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
-            if !supports
-                .iter()
-                .any(|s| common(s, &b3.grown(predicates.resolution::<N>())).is_some())
-            {
+            let around = b3.grown(predicates.resolution::<N>());
+            let regions = supports.iter().filter_map(|s| common(&s.bounds, &around));
+            let mut regions: Vec<Aabb> = regions.collect();
+            if regions.is_empty() {
                 continue;
+            }
+            if regions.len() > MANY_REGIONS || matches!(branch.curve, Curve::Line(_)) {
+                regions = vec![b3];
             }
             kept.push(self.meetings.len());
             self.meetings.push(IntersectionCurve {
@@ -249,6 +279,7 @@ impl<N: Float> Arrangement<N> {
                 carriers: vec![a, b],
                 tangent: branch.tangent.then_some([a, b]).into_iter().collect(),
                 bounds: b3,
+                regions,
                 parts,
                 cuts: Vec::new(),
             });
@@ -257,9 +288,21 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// The parts of a line inside the boxes; overlapping parts are joined.
-fn clipped<N: Float>(line: &Line<N>, range: [N; 2], boxes: &[Aabb]) -> Vec<[N; 2]> {
-    let mut parts: Vec<[N; 2]> = boxes.iter().filter_map(|b| b.along(line, range)).collect();
+/// The number of regions of a curve from which one box around them is used.
+const MANY_REGIONS: usize = 16;
+
+/// The parts of a line near pairs of faces; overlapping parts are joined.
+fn clipped<N: Float>(
+    line: &Line<N>,
+    range: [N; 2],
+    pairs: &[FacePair<'_>],
+    predicates: &Predicates,
+) -> Vec<[N; 2]> {
+    let reach = predicates.reach();
+    let parts = pairs
+        .iter()
+        .filter_map(|pair| pair.along(line, range, reach));
+    let mut parts: Vec<[N; 2]> = parts.collect();
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut joined: Vec<[N; 2]> = Vec::new();
     for p in parts {

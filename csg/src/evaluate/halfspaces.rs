@@ -1,6 +1,7 @@
 //! Represents every primitive as an intersection of half spaces, or as walls around a section and
 //! the half spaces of its ends.
 
+use super::face_hulls::FaceHull;
 use super::facets::Facets;
 use super::region::WalledRegion;
 use super::section::{Section, SectionMap};
@@ -26,6 +27,8 @@ pub(super) struct HalfSpace<N: Float> {
     pub surface: Surface<N>,
     /// The bounding box of the face.
     pub bounds: Aabb,
+    /// A convex polyhedron around the face, where it is smaller than the box.
+    pub hull: Option<FaceHull>,
 }
 
 /// A primitive in its final position.
@@ -115,9 +118,46 @@ pub(super) struct HalfSpaceModel<N: Float> {
 struct Pose<'a, N: Float> {
     placed: &'a PlacedPrimitive,
     turn: Matrix3<N>,
+    /// Whether the rotation is not one by quarter turns.
+    is_oblique: bool,
 }
 
-impl<N: Float> Pose<'_, N> {
+impl<'a, N: Float> Pose<'a, N> {
+    fn new(placed: &'a PlacedPrimitive) -> Self {
+        let entries = placed.motion.rotation_matrix();
+        let is_whole = |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry).is_one();
+        Self {
+            placed,
+            turn: placed.motion.rounded_rotation(),
+            is_oblique: !entries.iter().flatten().all(is_whole),
+        }
+    }
+
+    /// The position of a rounded point of the primitive's frame.
+    fn rounded_point(&self, p: [N; 3]) -> Point3<N> {
+        self.point(zero()) + self.turn * Vector3::from(p)
+    }
+
+    /// The hull of a box in the primitive's frame; `None` if it is the box of space.
+    fn hull_of_box(&self, lo: [N; 3], hi: [N; 3]) -> Option<FaceHull> {
+        let corners = (0..8).map(|k| {
+            let corner = std::array::from_fn(|i| if k >> i & 1 == 0 { lo[i] } else { hi[i] });
+            self.rounded_point(corner)
+        });
+        self.is_oblique
+            .then(|| FaceHull::of_box(corners, [0, 1, 2].map(|i| self.axis(i))))
+    }
+
+    /// The hull of a polygon in the primitive's frame.
+    fn hull_of_polygon(
+        &self,
+        corners: impl Iterator<Item = [N; 3]>,
+        surface: &Surface<N>,
+    ) -> FaceHull {
+        let corners = corners.map(|corner| self.rounded_point(corner));
+        FaceHull::of_polygon(corners, &surface.frame().z)
+    }
+
     /// The position of an exact point of the primitive's frame, rounded once.
     fn point(&self, p: [Rational; 3]) -> Point3<N> {
         let q = self.placed.motion.apply_point(&p);
@@ -221,14 +261,14 @@ impl<N: Float> HalfSpaceModel<N> {
 }
 
 fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
-    let pose = Pose {
-        placed,
-        turn: placed.motion.rounded_rotation(),
-    };
+    let pose = Pose::new(placed);
     let mut sides = Vec::new();
     let mut add = |surface: Surface<N>, lo: [N; 3], hi: [N; 3]| {
-        let bounds = pose.boxed(lo, hi);
-        sides.push(HalfSpace { surface, bounds });
+        sides.push(HalfSpace {
+            surface,
+            bounds: pose.boxed(lo, hi),
+            hull: pose.hull_of_box(lo, hi),
+        });
     };
     match &placed.primitive {
         Primitive::Block { size } => {
@@ -340,33 +380,49 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
             let k = N::nearest(top);
             let low: [N; 2] = std::array::from_fn(|i| lo[i].min(lo[i] * k));
             let high: [N; 2] = std::array::from_fn(|i| hi[i].max(hi[i] * k));
-            pose.boxed(
+            [
                 [low[0], low[1], N::ZERO],
                 [high[0], high[1], N::nearest(height)],
-            )
+            ]
         }
-        None => pose.boxed([-hi[0], -hi[0], lo[1]], [hi[0], hi[0], hi[1]]),
+        None => [[-hi[0], -hi[0], lo[1]], [hi[0], hi[0], hi[1]]],
     };
     let mut sides: Vec<HalfSpace<N>> = Vec::with_capacity(walls.len() + 2);
-    sides.extend(walls.iter().map(|wall| HalfSpace {
-        surface: pose.wall(wall),
-        bounds: swept(section.edges[wall.edge].bounds()),
+    sides.extend(walls.iter().map(|wall| {
+        let edge = &section.edges[wall.edge];
+        let surface = pose.wall(wall);
+        let [lo, hi] = swept(edge.bounds());
+        let hull = match (heights, wall.kind) {
+            (Some([height, top]), WallKind::Plane) => {
+                let corners = edge.swept_corners(N::nearest(height), N::nearest(top));
+                Some(pose.hull_of_polygon(corners.into_iter(), &surface))
+            }
+            _ => pose.hull_of_box(lo, hi),
+        };
+        HalfSpace {
+            surface,
+            bounds: pose.boxed(lo, hi),
+            hull,
+        }
     }));
     let whole = section.bounds();
-    let bounds = swept(whole);
+    let [lo, hi] = swept(whole);
+    let (bounds, hull) = (pose.boxed(lo, hi), pose.hull_of_box(lo, hi));
     let mut ends = EndRule::All;
     match primitive {
         Primitive::Prism { height, top, .. } => {
             let [[x, y], [x2, y2]] = whole;
-            let at = |z: &Rational, k: N, up: N| HalfSpace {
-                surface: pose.plane(
-                    [Rational::ZERO, Rational::ZERO, z.clone()],
-                    Vector3::z() * up,
-                ),
-                bounds: pose.boxed(
-                    [x * k, y * k, N::nearest(z)],
-                    [x2 * k, y2 * k, N::nearest(z)],
-                ),
+            let at = |z: &Rational, k: N, up: N| {
+                let lo = [x * k, y * k, N::nearest(z)];
+                let hi = [x2 * k, y2 * k, N::nearest(z)];
+                HalfSpace {
+                    surface: pose.plane(
+                        [Rational::ZERO, Rational::ZERO, z.clone()],
+                        Vector3::z() * up,
+                    ),
+                    bounds: pose.boxed(lo, hi),
+                    hull: pose.hull_of_box(lo, hi),
+                }
             };
             sides.push(at(&Rational::ZERO, N::ONE, -N::ONE));
             if !top.is_zero() {
@@ -382,6 +438,7 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
                 HalfSpace {
                     surface: pose.plane(zero(), normal.unit()),
                     bounds,
+                    hull: hull.clone(),
                 }
             }));
         }
@@ -404,9 +461,13 @@ fn faceted<N: Float>(leaf: NodeId, pose: &Pose<'_, N>, polyhedron: &Polyhedron) 
         let [lo, hi] = facets.bounds(facet);
         let normal = Vector3::from(polyhedron.normal(facet).each_ref().map(N::nearest));
         let through = polyhedron.corners(facet).next();
+        let surface = pose.plane(through.cloned().unwrap_or_default(), normal.unit());
+        let corners = polyhedron.corners(facet);
+        let corners = corners.map(|corner| corner.each_ref().map(N::nearest));
         HalfSpace {
-            surface: pose.plane(through.cloned().unwrap_or_default(), normal.unit()),
             bounds: pose.boxed(lo, hi),
+            hull: Some(pose.hull_of_polygon(corners, &surface)),
+            surface,
         }
     };
     let sides: Vec<HalfSpace<N>> = (0..facets.count()).map(side).collect();

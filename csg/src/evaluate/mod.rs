@@ -15,6 +15,7 @@
 //! | `facets` | the same of a polyhedron |
 //! | `region` | one of these two |
 //! | `halfspaces` | every primitive as half-spaces, or as walls between half-spaces |
+//! | `face_hulls` | convex polyhedra around faces, where boxes are too wide |
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
@@ -47,6 +48,7 @@ mod error;
 mod escalation;
 mod evaluation;
 mod exact_coefficients;
+mod face_hulls;
 mod face_verification;
 mod facets;
 mod halfspaces;

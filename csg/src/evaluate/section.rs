@@ -121,6 +121,17 @@ impl<N: Float> SectionEdge<N> {
         self.bounds
     }
 
+    /// The corners of what a segment sweeps up to a height, at which the figure has a scale.
+    pub fn swept_corners(&self, height: N, scale: N) -> [[N; 3]; 4] {
+        let ([x, y], [u, v]) = (self.start, self.end);
+        [
+            [x, y, N::ZERO],
+            [u, v, N::ZERO],
+            [u * scale, v * scale, height],
+            [x * scale, y * scale, height],
+        ]
+    }
+
     /// Whether a point is in its box, enlarged by `margin`.
     fn is_near(&self, p: [N; 2], margin: N) -> bool {
         let [lo, hi] = self.bounds;

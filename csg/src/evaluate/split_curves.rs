@@ -47,21 +47,9 @@ impl<N: Float> Arrangement<N> {
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Result<(), EvaluationError> {
-        let m = &self.meetings[index];
-        let around = AABB::from_corners(m.bounds.min, m.bounds.max);
-        let mut near: Vec<CarrierFace> = Vec::new();
-        for s in self.tree.locate_in_envelope_intersecting(around) {
-            let solid = &solids.all[s.data];
-            for k in solid.sides_near(&m.bounds.grown(predicates.reach::<N>())) {
-                let carrier = self.sides[s.data][k].carrier;
-                let bounds = solid.sides[k].bounds.grown(predicates.reach::<N>());
-                if !m.carriers.contains(&carrier) && common(&bounds, &m.bounds).is_some() {
-                    near.push(CarrierFace { carrier, bounds });
-                }
-            }
-        }
+        let mut near = self.faces_near(index, solids, predicates);
         near.sort_by_key(|face| face.carrier);
-        let known: Vec<Cut<N>> = m.cuts.clone();
+        let known: Vec<Cut<N>> = self.meetings[index].cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
@@ -75,6 +63,35 @@ impl<N: Float> Arrangement<N> {
         m.carriers.sort_unstable();
         m.cuts.extend(cuts);
         Ok(())
+    }
+
+    /// The faces close to a curve where it may lie on faces of both its carriers.
+    fn faces_near(
+        &self,
+        index: usize,
+        solids: &HalfSpaceModel<N>,
+        predicates: &Predicates,
+    ) -> Vec<CarrierFace> {
+        let m = &self.meetings[index];
+        let reach = predicates.reach::<N>();
+        let mut near: Vec<CarrierFace> = Vec::new();
+        for region in &m.regions {
+            let around = AABB::from_corners(region.min, region.max);
+            for s in self.tree.locate_in_envelope_intersecting(around) {
+                let solid = &solids.all[s.data];
+                for k in solid.sides_near(&region.grown(reach)) {
+                    let (carrier, side) = (self.sides[s.data][k].carrier, &solid.sides[k]);
+                    let bounds = common(&side.bounds.grown(reach), region);
+                    if let Some(bounds) = bounds
+                        && !m.carriers.contains(&carrier)
+                        && m.is_near(side.hull.as_ref(), predicates)
+                    {
+                        near.push(CarrierFace { carrier, bounds });
+                    }
+                }
+            }
+        }
+        near
     }
 
     /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.

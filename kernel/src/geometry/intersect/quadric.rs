@@ -192,6 +192,16 @@ fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> b
     predicates.classify_at_point("apex on quadric", away, at) == Side::On
 }
 
+/// The sine of α + θ for a cone of half-angle α whose axis makes the angle θ with a direction. With
+/// the sine of α − θ it makes the cone's form sin² α − sin² θ at the direction.
+fn sine_of_sum<N: Float>(cone: &Cone<N>, direction: &Vector3<N>) -> N {
+    let (cos, sin) = (
+        cone.frame.z.dot(direction).abs(),
+        cone.frame.z.cross(direction).length(),
+    );
+    cone.sin * cos + cone.cos * sin
+}
+
 fn over_first<N: Float>(
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
@@ -208,10 +218,14 @@ fn over_first<N: Float>(
         // The rulings are a direction of the other surface: a cone with a ruling parallel to them.
         // Two cylinders that reach this place have axes that are not parallel, however small the
         // angle.
-        Ruled::Cylinder(_) => {
-            let along = predicates.within(rulings.lead * pair.extent.radius);
-            along && !matches!(pair.b.surface, Surface::Cylinder(_))
-        }
+        Ruled::Cylinder(c) => match pair.b.surface {
+            Surface::Cone(cone) => {
+                let sine = rulings.lead / sine_of_sum(cone, &c.frame.z);
+                predicates.within(sine * pair.extent.radius)
+            }
+            Surface::Cylinder(_) => false,
+            _ => predicates.within(rulings.lead * pair.extent.radius),
+        },
         Ruled::Cone(_) => holds_apex(&pair.turned(), predicates),
     };
     if is_single {

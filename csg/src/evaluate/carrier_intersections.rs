@@ -12,10 +12,11 @@ use super::face_hulls::FaceHull;
 use super::halfspaces::HalfSpaceModel;
 use super::split_curves::Later;
 use super::vertices::{CornerIndex, VertexMerger};
+use super::wall_joints::WallJoints;
 use crate::tree::Tree;
 use premio_kernel::geometry::bounds::{Aabb, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
-use premio_kernel::geometry::intersect::{Branch, intersect};
+use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, intersect};
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::geometry::trace::BranchPosition;
@@ -58,8 +59,10 @@ pub(super) fn arrange<'t, N: Float>(
         tree,
     };
     let mut corners = VertexMerger::new(predicates.resolution());
+    let joints = WallJoints::new(solids, &found.sides);
     for (pair, supports) in found.pairs(solids, reach, most)? {
-        found.add_pair(pair, &supports, &sources, extent, predicates, &mut corners)?;
+        let intersected = found.intersected(pair, &sources, extent, &joints, predicates)?;
+        found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
         bounded(found.meetings.len(), most)?;
     }
     found.settle_contacts(predicates);
@@ -200,28 +203,45 @@ impl<N: Float> Arrangement<N> {
         added
     }
 
-    fn add_pair(
+    /// The intersection of two carriers, with contacts moved to the joints of walls.
+    fn intersected(
         &mut self,
-        [a, b]: [usize; 2],
-        supports: &[FacePair<'_>],
+        pair: [usize; 2],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
+        joints: &WallJoints<N>,
         predicates: &Predicates,
-        corners: &mut VertexMerger<N>,
-    ) -> Result<(), EvaluationError> {
-        let exact = [a, b].map(|c| move || sources[c].exact());
-        let carrier = |c: usize, i: usize| Carrier::rounded(&self.carriers[c], &exact[i]);
+    ) -> Result<SurfaceIntersection<N>, EvaluationError> {
+        let exact = pair.map(|c| move || sources[c].exact());
+        let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
         let own = predicates.another();
-        let found = intersect(carrier(a, 0), carrier(b, 1), extent, &own)?;
+        let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
+        let surfaces = pair.map(|c| &self.carriers[c]);
+        for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
+            if let Some(moved) = joints.moved(pair, branch, surfaces, predicates) {
+                *branch = moved;
+            }
+        }
         for call in predicates.take(own) {
             match call.local {
                 true => self.calls.push(Unlisted {
                     call,
-                    between: Between::Carriers([a, b]),
+                    between: Between::Carriers(pair),
                 }),
                 false => predicates.list(call),
             }
         }
+        Ok(found)
+    }
+
+    fn add_pair(
+        &mut self,
+        [a, b]: [usize; 2],
+        supports: &[FacePair<'_>],
+        found: &SurfaceIntersection<N>,
+        predicates: &Predicates,
+        corners: &mut VertexMerger<N>,
+    ) {
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &found.branches {
             kept.push(self.add_branch(a, b, branch, supports, predicates));
@@ -242,7 +262,6 @@ impl<N: Float> Arrangement<N> {
                 }
             }
         }
-        Ok(())
     }
 
     /// Adds a branch, clipped to both faces' boxes, and returns its indices.

@@ -194,7 +194,7 @@ fn evaluated_at_finest<N: Float>(
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
-    use crate::evaluate::{EvaluationOptions, evaluate};
+    use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
     use crate::reader::{Format, ReadOptions, read};
     use approx::assert_relative_eq;
 
@@ -206,6 +206,70 @@ mod tests {
                 [-11.2073, 34.7516]]);
         }
     }";
+
+    /// The boundary of a description for OpenSCAD.
+    fn evaluated(text: &str) -> Evaluation {
+        let read = read("", text.as_bytes(), Format::Csg, &ReadOptions::default()).unwrap();
+        evaluate(&read.tree, &EvaluationOptions::default()).unwrap()
+    }
+
+    /// The volume between radii that grow evenly from one height to another.
+    fn frustum(radii: [f64; 2], heights: [f64; 2]) -> f64 {
+        let [a, b] = radii;
+        std::f64::consts::PI / 3.0 * (heights[1] - heights[0]) * (a * a + a * b + b * b)
+    }
+
+    /// A hull of squares whose sides six digits moved 2e-6 apart: a cone with an apex 1e6 away
+    /// continues a cylinder.
+    #[test]
+    fn a_cone_that_is_nearly_a_cylinder_meets_the_wall_above() {
+        let known = evaluated(
+            "rotate_extrude() hull() {
+                square(size = [1.12176, 0.0078125]);
+                multmatrix([[1, 0, 0, 0.721762], [0, 1, 0, 1.99219], [0, 0, 1, 0], [0, 0, 0, 1]]) {
+                    square(size = [0.4, 0.4]);
+                }
+            }",
+        );
+        // 1e-11 of the size, not the finest resolution.
+        assert!(known.resolution > 1e-12);
+        let walls = frustum([1.12176, 1.121762], [0.0, 1.99219])
+            + frustum([1.121762, 1.121762], [1.99219, 2.39219]);
+        let notch = frustum([0.0, 0.721762], [0.0078125, 2.39219]);
+        assert_relative_eq!(known.mass().volume, walls - notch, max_relative = 1e-9);
+        assert_eq!(known.brep.topology.faces.len(), 5);
+    }
+
+    /// A side that ends where an arc begins, at an angle of 3e-7 to it: the line of the side
+    /// intersects the arc's circle again 5e-7 below.
+    #[test]
+    fn walls_that_are_nearly_tangent_end_where_their_edges_do() {
+        let known = evaluated(
+            "rotate_extrude() hull() {
+                square(size = [2.77128, 0.0078125]);
+                multmatrix([[1, 0, 0, 1.971281], [0, 1, 0, 3.19219], [0, 0, 1, 0], [0, 0, 0, 1]]) {
+                    intersection() {
+                        circle($fn = 24, r = 0.8);
+                        square(size = [0.8, 0.8]);
+                    }
+                }
+            }",
+        );
+        assert!(known.resolution > 1e-12);
+        let wall = frustum([2.77128, 2.771281], [0.0, 3.19219]);
+        // The section through the quarter of the tube, by Pappus.
+        let (r, major) = (0.8f64, 1.971281);
+        let (area, centre) = (
+            r * r * std::f64::consts::FRAC_PI_4,
+            4.0 * r / (3.0 * std::f64::consts::PI),
+        );
+        let quarter = std::f64::consts::TAU * area * (major + centre);
+        let below = frustum([major, major], [3.19219, 3.99219]);
+        let notch = frustum([0.0, major], [0.0078125, 3.99219]);
+        let volume = wall + quarter + below - notch;
+        assert_relative_eq!(known.mass().volume, volume, max_relative = 1e-9);
+        assert_eq!(known.brep.topology.faces.len(), 4);
+    }
 
     #[test]
     fn where_merging_within_the_noise_contradicts_itself_f64_does_without() {

@@ -19,6 +19,7 @@
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
+//! | `wall_joints` | moves a curve of contact to the end of the walls that meet there |
 //! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
 //! | `split_curves` | the common points of curves and carriers |
 //! | `vertices` | equal points merged |
@@ -66,6 +67,7 @@ mod split_curves;
 mod tangent_contacts;
 mod vanished;
 mod vertices;
+mod wall_joints;
 mod walls;
 
 pub use error::EvaluationError;

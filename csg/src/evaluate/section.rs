@@ -8,9 +8,12 @@ use super::incident_walls::{IncidentWall, RegionLook};
 use super::walls::Wall;
 use crate::figure::{ArcTurn, Figure, FigureEdge};
 use nalgebra::{Matrix3, Point3, Vector3};
+use premio_kernel::geometry::curve::{self, Curve, Line};
+use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
+use std::collections::HashMap;
 
 /// The circle of an arc.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +47,14 @@ pub(super) enum SectionMap<N: Float> {
     },
     /// About z.
     Revolution,
+}
+
+/// The joint of two walls of a section.
+pub(super) struct WallJoint<N: Float> {
+    /// The two sides of the primitive.
+    pub sides: [usize; 2],
+    /// The curve that the common end of their edges sweeps.
+    pub curve: Curve<N>,
 }
 
 /// A point in the plane of the figure.
@@ -314,6 +325,46 @@ impl<N: Float> Section<N> {
                 std::array::from_fn(|i| hi[i].max(to[i])),
             ]
         })
+    }
+
+    /// The curves in which consecutive walls meet.
+    pub fn joints(&self) -> Vec<WallJoint<N>> {
+        let key = |p: [N; 2]| p.map(N::bits);
+        let mut starts: HashMap<_, Vec<usize>> = HashMap::new();
+        for edge in &self.edges {
+            let side = edge.side.into_iter();
+            starts.entry(key(edge.start)).or_default().extend(side);
+        }
+        let joints = self.edges.iter().flat_map(|edge| {
+            let next = starts.get(&key(edge.end)).into_iter().flatten();
+            let next = edge.side.into_iter().zip(next.copied());
+            next.map(|(side, next)| WallJoint {
+                sides: [side, next],
+                curve: self.swept_point(edge.end),
+            })
+        });
+        joints.collect()
+    }
+
+    /// The curve that a point of the figure sweeps.
+    fn swept_point(&self, [x, y]: [N; 2]) -> Curve<N> {
+        let world = |p: Vector3<N>| self.origin + self.turn * p;
+        match self.map {
+            SectionMap::Prism { growth } => Curve::Line(Line {
+                origin: world(Vector3::new(x, y, N::ZERO)),
+                direction: self.turn * Vector3::new(x * growth, y * growth, N::ONE).unit(),
+            }),
+            SectionMap::Revolution => {
+                let [u, v, w] = [0, 1, 2].map(|i| self.turn.column(i).into());
+                let frame = Frame {
+                    origin: world(Vector3::new(N::ZERO, N::ZERO, y)),
+                    x: u,
+                    y: v,
+                    z: w,
+                };
+                Curve::Circle(curve::Circle { frame, radius: x })
+            }
+        }
     }
 
     /// The image of a point; `None` beyond the apex of a prism.

@@ -7,6 +7,7 @@
 //! | `settings` | what the options mean for the part |
 //! | `result_boxes` | boxes around the results of the tree's nodes |
 //! | `components` | the components that are apart; each passes the stages below by itself |
+//! | `concurrency` | several of them at a time |
 //! | `escalation` | f64, and more bits where fewer are inconclusive |
 //! | `near_cylinders` | refuses frustums that are nearly cylinders |
 //! | `vanished` | drops primitives thinner than the resolution |
@@ -41,6 +42,7 @@ mod arrangement;
 mod carrier_intersections;
 mod close_calls;
 mod components;
+mod concurrency;
 mod distinct_surfaces;
 mod edge_candidates;
 mod edge_classification;
@@ -93,7 +95,6 @@ use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{CoincidencePolicy, Compare, Predicates};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -133,9 +134,12 @@ pub enum Arithmetic {
 /// The default limit on curves and points of curves between the surfaces of a component.
 pub const MAX_ENTITIES: usize = 1 << 23;
 
+/// The number of surfaces of a part from which its components are worth threads of their own.
+const MANY_SIDES: usize = 256;
+
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
-/// Components whose boxes are apart are evaluated by themselves, in parallel. Each is evaluated in
+/// Components whose boxes are apart are evaluated by themselves, in parallel if the part is large. Each is evaluated in
 /// f64, and if f64 is inconclusive, with the same resolution in 106 bits, and at last in 237 bits.
 /// Exact evaluation starts with 106 bits.
 ///
@@ -152,10 +156,11 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     let Some(trees) = components(tree, &boxes, gap) else {
         return evaluate_component(tree, &settings);
     };
-    let evaluations: Vec<_> = trees
-        .par_iter()
-        .map(|tree| evaluate_component(tree, &settings))
-        .collect();
+    let evaluate = |tree: &Tree| evaluate_component(tree, &settings);
+    let evaluations = match tree.side_count() > MANY_SIDES {
+        true => concurrency::map(&trees, evaluate),
+        false => trees.iter().map(evaluate).collect(),
+    };
     let evaluations: Result<Vec<Evaluation>, _> = evaluations.into_iter().collect();
     Ok(Evaluation::joined(evaluations?))
 }

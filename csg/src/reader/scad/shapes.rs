@@ -213,10 +213,7 @@ pub(super) fn polyhedron(
         made => made.map_err(|error| bad_polyhedron(&error, arguments))?,
     };
     if made.triangulated > 0 {
-        let count = made.triangulated;
-        let text =
-            format!("{count} faces of a polyhedron are not plane, and were cut into triangles");
-        notes.add(text, arguments.span.clone());
+        notes.triangulated(made.triangulated, arguments.span.clone());
     }
     let polyhedron = Arc::new(made.polyhedron);
     let primitive = Primitive::Polyhedron { polyhedron };

@@ -2,7 +2,6 @@
 
 use super::evaluation::{Evaluated, Evaluation};
 use super::halfspaces::HalfSpaceModel;
-use super::result_boxes::ResultBoxes;
 use super::settings::Settings;
 use super::{Arithmetic, EvaluationError, evaluated, vanished};
 use crate::tree::Tree;
@@ -31,9 +30,11 @@ fn is_small(tree: &Tree, few: usize) -> bool {
     tree.leaves().count() <= few && tree.side_count() <= SIDES * few
 }
 
-/// The boundary of a component, in the arithmetic that it needs.
+/// The boundary of a component, in the arithmetic that it needs. `is_below_vast` says whether its
+/// primitives are far larger than its result.
 pub(super) fn evaluate_component(
     tree: &Tree,
+    is_below_vast: bool,
     settings: &Settings,
 ) -> Result<Evaluation, EvaluationError> {
     match (settings.zeros, settings.digits) {
@@ -46,15 +47,18 @@ pub(super) fn evaluate_component(
             let known = evaluated_in_more_bits::<F237>(tree, settings)?;
             Ok(with_view_resolution(tree, settings, known.into()))
         }
-        (CoincidencePolicy::ByResolution, Arithmetic::Filtered) => by_resolution(tree, settings),
+        (CoincidencePolicy::ByResolution, Arithmetic::Filtered) => {
+            let is_below_vast = is_below_vast && settings.requested.is_none();
+            match is_below_vast {
+                true => beside_vast_tools(tree, settings),
+                false => by_resolution(tree, settings),
+            }
+        }
     }
 }
 
 /// Evaluates in f64, and where that is inconclusive, in more and more bits.
 fn by_resolution(tree: &Tree, settings: &Settings) -> Result<Evaluation, EvaluationError> {
-    if settings.requested.is_none() && ResultBoxes::new(tree).size_below_vast().is_some() {
-        return beside_vast_tools(tree, settings);
-    }
     let error = match in_f64(tree, settings) {
         Err(error) if error.is_of_rounding() => error,
         known => return known,

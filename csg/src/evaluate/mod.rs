@@ -154,9 +154,12 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     let resolution = settings.requested.unwrap_or(settings.default_resolution());
     let gap = Predicates::new(resolution).reach::<f64>();
     let Some(trees) = components(tree, &boxes, gap) else {
-        return evaluate_component(tree, &settings);
+        return evaluate_component(tree, size.is_some(), &settings);
     };
-    let evaluate = |tree: &Tree| evaluate_component(tree, &settings);
+    let evaluate = |tree: &Tree| {
+        let size = ResultBoxes::new(tree).size_below_vast();
+        evaluate_component(tree, size.is_some(), &settings)
+    };
     let evaluations = match tree.side_count() > MANY_SIDES {
         true => concurrency::map(&trees, evaluate),
         false => trees.iter().map(evaluate).collect(),

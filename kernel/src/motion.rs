@@ -248,6 +248,16 @@ impl Motion {
         self.rounded_rotation()
     }
 
+    /// Whether it turns by multiples of 90° about the coordinate axes.
+    pub fn is_by_quarter_turns(&self) -> bool {
+        let is_whole = |x: &Rational| x.is_zero() || x.is_one() || (-x).is_one();
+        let mut entries = self
+            .rotation
+            .iter()
+            .flat_map(|matrix| matrix.iter().flatten());
+        entries.all(is_whole)
+    }
+
     /// The rotation, rounded once to the precision of `N`.
     pub fn rounded_rotation<N: Float>(&self) -> Matrix3<N> {
         match &self.rotation {

@@ -114,7 +114,7 @@ fn bounded(entities: usize, most: usize) -> Result<(), EvaluationError> {
 }
 
 /// Two faces that may intersect.
-pub(super) struct FacePair<'s> {
+struct FacePair<'s> {
     /// The intersection of their boxes.
     bounds: Aabb,
     /// Their hulls.
@@ -134,8 +134,8 @@ impl FacePair<'_> {
 type Pairs<'s> = BTreeMap<[usize; 2], Vec<FacePair<'s>>>;
 
 impl<N: Float> Arrangement<N> {
-    /// The pairs of carriers whose faces' boxes intersect, with the intersections of these boxes.
-    /// Of several equal solids one is used.
+    /// The pairs of carriers whose faces may intersect, with these faces. Of several equal solids
+    /// one is used.
     fn pairs<'s>(
         &self,
         solids: &'s HalfSpaceModel<N>,
@@ -218,7 +218,7 @@ impl<N: Float> Arrangement<N> {
         let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
         let surfaces = pair.map(|c| &self.carriers[c]);
         for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
-            if let Some(moved) = joints.moved(pair, branch, surfaces, predicates) {
+            if let Some(moved) = joints.contact_at_joint(pair, branch, surfaces, predicates) {
                 *branch = moved;
             }
         }
@@ -234,6 +234,7 @@ impl<N: Float> Arrangement<N> {
         Ok(found)
     }
 
+    /// Adds the intersection of two carriers where their faces may intersect.
     fn add_pair(
         &mut self,
         [a, b]: [usize; 2],
@@ -264,7 +265,7 @@ impl<N: Float> Arrangement<N> {
         }
     }
 
-    /// Adds a branch, clipped to both faces' boxes, and returns its indices.
+    /// Adds the parts of a branch near both faces, and returns their indices.
     fn add_branch(
         &mut self,
         a: usize,
@@ -287,7 +288,7 @@ impl<N: Float> Arrangement<N> {
             if regions.is_empty() {
                 continue;
             }
-            if regions.len() > MANY_REGIONS || matches!(branch.curve, Curve::Line(_)) {
+            if regions.len() > MAX_REGIONS || matches!(branch.curve, Curve::Line(_)) {
                 regions = vec![b3];
             }
             kept.push(self.meetings.len());
@@ -307,8 +308,8 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// The number of regions of a curve from which one box around them is used.
-const MANY_REGIONS: usize = 16;
+/// The maximum number of regions of a curve. One box around the curve takes the place of more.
+const MAX_REGIONS: usize = 16;
 
 /// The parts of a line near pairs of faces; overlapping parts are joined.
 fn clipped<N: Float>(

@@ -1,14 +1,14 @@
-//! Divides a tree into components that are apart, each to be evaluated by itself.
+//! Divides a tree into components that are apart and can be evaluated separately.
 //!
 //! A union is divided into its children, and (A + B) - C into A - C and B - C. Pieces whose boxes
 //! overlap, directly or through others, form one component.
 
-use super::arrangement::common;
 use super::result_boxes::ResultBoxes;
 use crate::tree::{NodeId, Operation, Tree, TreeNode};
 use premio_kernel::geometry::bounds::Aabb;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
+use std::collections::HashMap;
 
 /// A solid of the union: a node, or the part of a difference that one child of its minuend gives.
 #[derive(Clone, Copy, Debug)]
@@ -21,17 +21,18 @@ struct Piece {
     bounds: Aabb,
 }
 
-/// The components of a tree, in the order written; those are apart that are more than `gap` apart.
-/// `None` if there is one component only.
+/// The components of a tree, in the order written. Pieces whose boxes, enlarged by `gap` on all
+/// sides, do not overlap are apart. `None` if there is one component only.
 pub(super) fn components(tree: &Tree, boxes: &ResultBoxes, gap: f64) -> Option<Vec<Tree>> {
     let pieces = pieces(tree, boxes);
     let groups = groups(&pieces, gap);
     if groups.len() < 2 {
         return None;
     }
+    let mut tools = Tools::new(tree, boxes, gap);
     let trees = groups.iter().map(|group| {
         let group: Vec<Piece> = group.iter().map(|&i| pieces[i]).collect();
-        component(tree, &group, boxes, gap)
+        component(tree, &group, &mut tools)
     });
     Some(trees.collect())
 }
@@ -84,11 +85,12 @@ fn groups(pieces: &[Piece], gap: f64) -> Vec<Vec<usize>> {
         let Aabb { min, max } = piece.bounds.grown(gap);
         GeomWithData::new(Rectangle::from_corners(min, max), i)
     });
-    let near = RTree::bulk_load(boxes.collect());
+    // Each piece leaves the index when it is found: many may overlap many.
+    let mut left = RTree::bulk_load(boxes.collect());
     let mut is_taken = vec![false; pieces.len()];
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for first in 0..pieces.len() {
-        if std::mem::replace(&mut is_taken[first], true) {
+        if is_taken[first] {
             continue;
         }
         let mut group = vec![first];
@@ -96,8 +98,8 @@ fn groups(pieces: &[Piece], gap: f64) -> Vec<Vec<usize>> {
         while let Some(&i) = group.get(next) {
             let around = pieces[i].bounds.grown(gap);
             let around = AABB::from_corners(around.min, around.max);
-            for other in near.locate_in_envelope_intersecting(around) {
-                if !std::mem::replace(&mut is_taken[other.data], true) {
+            for other in left.drain_in_envelope_intersecting(around) {
+                if !std::mem::replace(&mut is_taken[other.data], true) && other.data != first {
                     group.push(other.data);
                 }
             }
@@ -109,8 +111,49 @@ fn groups(pieces: &[Piece], gap: f64) -> Vec<Vec<usize>> {
     groups
 }
 
+/// The tools of the differences that are divided, by their boxes.
+struct Tools<'t> {
+    tree: &'t Tree,
+    boxes: &'t ResultBoxes,
+    gap: f64,
+    /// By difference, once it was queried.
+    indices: HashMap<NodeId, BoxTree>,
+}
+
+/// A tree of the boxes of tools, by the places of the tools among the children.
+type BoxTree = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
+
+impl<'t> Tools<'t> {
+    fn new(tree: &'t Tree, boxes: &'t ResultBoxes, gap: f64) -> Self {
+        Self {
+            tree,
+            boxes,
+            gap,
+            indices: HashMap::new(),
+        }
+    }
+
+    /// The tools of a difference that reach a box, in the order written.
+    fn near(&mut self, difference: NodeId, around: &Aabb) -> Vec<NodeId> {
+        let children = children(self.tree, difference);
+        let (boxes, around) = (self.boxes, around.grown(self.gap));
+        let index = self.indices.entry(difference).or_insert_with(|| {
+            let tools = children.iter().enumerate().skip(1).map(|(i, &tool)| {
+                let Aabb { min, max } = boxes.of_node(tool);
+                GeomWithData::new(Rectangle::from_corners(min, max), i)
+            });
+            RTree::bulk_load(tools.collect())
+        });
+        let around = AABB::from_corners(around.min, around.max);
+        let near = index.locate_in_envelope_intersecting(around);
+        let mut near: Vec<usize> = near.map(|tool| tool.data).collect();
+        near.sort_unstable();
+        near.into_iter().map(|i| children[i]).collect()
+    }
+}
+
 /// The tree of the pieces of one component.
-fn component(tree: &Tree, group: &[Piece], boxes: &ResultBoxes, gap: f64) -> Tree {
+fn component(tree: &Tree, group: &[Piece], tools: &mut Tools<'_>) -> Tree {
     let mut copy = TreeCopy {
         tree,
         copy: Tree::default(),
@@ -118,7 +161,7 @@ fn component(tree: &Tree, group: &[Piece], boxes: &ResultBoxes, gap: f64) -> Tre
     let shares: Vec<&[Piece]> = group.chunk_by(|a, b| a.source == b.source).collect();
     let parent = (shares.len() > 1).then(|| copy.operation(Operation::Union, None));
     for share in shares {
-        copy.share(share, parent, boxes, gap);
+        copy.share(share, parent, tools);
     }
     copy.copy
 }
@@ -131,17 +174,15 @@ struct TreeCopy<'t> {
 
 impl TreeCopy<'_> {
     /// Adds what a component has of one child of the root.
-    fn share(&mut self, share: &[Piece], parent: Option<NodeId>, boxes: &ResultBoxes, gap: f64) {
+    fn share(&mut self, share: &[Piece], parent: Option<NodeId>, tools: &mut Tools<'_>) {
         let source = share[0].source;
         let is_whole = minuends(self.tree, source).is_none_or(|all| all.len() == share.len());
         if is_whole {
             return self.node(source, parent);
         }
         let bounds = share.iter().map(|piece| piece.bounds);
-        let bounds = bounds.fold(Aabb::EMPTY, |all, b| all.hull(&b)).grown(gap);
-        let tools = children(self.tree, source).iter().skip(1).copied();
-        let tools = tools.filter(|&tool| common(&boxes.of_node(tool), &bounds).is_some());
-        let tools: Vec<NodeId> = tools.collect();
+        let bounds = bounds.fold(Aabb::EMPTY, |all, b| all.hull(&b));
+        let tools = tools.near(source, &bounds);
         let parent = match tools.is_empty() {
             true => parent,
             false => Some(self.operation(Operation::Difference, parent)),

@@ -1,11 +1,11 @@
-//! Work on several items at a time.
+//! A parallel map.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, Builder};
 
-/// The results of some work on every item, in order, with as many threads as the machine runs at a
-/// time. The threads are the caller's own: those of a pool may all be waiting for this result.
+/// The results of `work` on every item, in order. It runs on as many threads as the machine has
+/// cores. They belong to no thread pool: all workers of a pool may be waiting for this result.
 pub(super) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let take = || {

@@ -16,25 +16,26 @@ use premio_kernel::number::predicates::{
 /// The maximum numbers of primitives of a component that is evaluated in 106 bits, and in 237 bits,
 /// if fewer bits are inconclusive. That takes some ten times, and some hundred times, as long as
 /// f64.
-const FEW_IN_106_BITS: usize = 1024;
-const FEW_IN_237_BITS: usize = 64;
+const MAX_PRIMITIVES_IN_106_BITS: usize = 1024;
+const MAX_PRIMITIVES_IN_237_BITS: usize = 64;
 
 /// The maximum number of surfaces for each primitive of such a component, on average.
-const SIDES: usize = 6;
+const MAX_SIDES_PER_PRIMITIVE: usize = 6;
 
 /// The maximum number of surfaces of a component of which the measures are computed in 106 bits.
-const FEW_TO_MEASURE: usize = 1024;
+const MAX_SIDES_TO_MEASURE: usize = 1024;
 
-/// Whether a tree has at most so many primitives, and not many more surfaces.
-fn is_small(tree: &Tree, few: usize) -> bool {
-    tree.leaves().count() <= few && tree.side_count() <= SIDES * few
+/// Whether a tree has at most `max_primitives`, and not many more surfaces.
+fn is_small(tree: &Tree, max_primitives: usize) -> bool {
+    tree.leaves().count() <= max_primitives
+        && tree.side_count() <= MAX_SIDES_PER_PRIMITIVE * max_primitives
 }
 
-/// The boundary of a component, in the arithmetic that it needs. `is_below_vast` says whether its
-/// primitives are far larger than its result.
+/// The boundary of a component, in the arithmetic that it needs. `has_vast_tools` says
+/// whether its primitives are far larger than its result.
 pub(super) fn evaluate_component(
     tree: &Tree,
-    is_below_vast: bool,
+    has_vast_tools: bool,
     settings: &Settings,
 ) -> Result<Evaluation, EvaluationError> {
     match (settings.zeros, settings.digits) {
@@ -48,9 +49,8 @@ pub(super) fn evaluate_component(
             Ok(with_view_resolution(tree, settings, known.into()))
         }
         (CoincidencePolicy::ByResolution, Arithmetic::Filtered) => {
-            let is_below_vast = is_below_vast && settings.requested.is_none();
-            match is_below_vast {
-                true => beside_vast_tools(tree, settings),
+            match has_vast_tools && settings.requested.is_none() {
+                true => with_resolution_of_part(tree, settings),
                 false => by_resolution(tree, settings),
             }
         }
@@ -69,14 +69,14 @@ fn by_resolution(tree: &Tree, settings: &Settings) -> Result<Evaluation, Evaluat
     if let Some(Ok(known)) = is_noisy.then(|| in_f64(tree, settings)) {
         return Ok(known);
     }
-    let error = match is_worth_more_bits(&error, tree, FEW_IN_106_BITS) {
+    let error = match may_succeed_in_more_bits(&error, tree, MAX_PRIMITIVES_IN_106_BITS) {
         true => match evaluated_in_more_bits::<F106>(tree, settings) {
             Ok(known) => return Ok(known.into()),
             Err(error) => error,
         },
         false => error,
     };
-    match is_worth_more_bits(&error, tree, FEW_IN_237_BITS) {
+    match may_succeed_in_more_bits(&error, tree, MAX_PRIMITIVES_IN_237_BITS) {
         true => evaluated_in_more_bits::<F237>(tree, settings).map(Evaluation::from),
         false => Err(error),
     }
@@ -97,8 +97,11 @@ fn in_f64(tree: &Tree, settings: &Settings) -> Result<Evaluation, EvaluationErro
 
 /// Evaluates a component whose tools are far larger: with the resolution of the part, which f64
 /// does not have for them.
-fn beside_vast_tools(tree: &Tree, settings: &Settings) -> Result<Evaluation, EvaluationError> {
-    if !is_small(tree, FEW_IN_106_BITS) {
+fn with_resolution_of_part(
+    tree: &Tree,
+    settings: &Settings,
+) -> Result<Evaluation, EvaluationError> {
+    if !is_small(tree, MAX_PRIMITIVES_IN_106_BITS) {
         let far = HalfSpaceModel::<f64>::new(tree).bounds.diagonal();
         let size = settings.size;
         return Err(EvaluationError::TooFarFromOrigin { far, size });
@@ -113,9 +116,9 @@ fn finer_measures(
     settings: &Settings,
     known: &Evaluated<f64>,
 ) -> Option<Evaluated<F106>> {
-    let is_asked = known.measures.precision().is_beyond(RELATIVE_RESOLUTION)
-        && tree.side_count() <= FEW_TO_MEASURE;
-    let fine = is_asked.then(|| evaluated::<F106>(tree, settings).ok())??;
+    let is_needed = known.measures.precision().is_beyond(RELATIVE_RESOLUTION)
+        && tree.side_count() <= MAX_SIDES_TO_MEASURE;
+    let fine = is_needed.then(|| evaluated::<F106>(tree, settings).ok())??;
     let census = known.brep.topology.census();
     (fine.brep.topology.census() == census).then_some(fine)
 }
@@ -133,16 +136,16 @@ fn exact_evaluation(tree: &Tree, settings: &Settings) -> Result<Evaluation, Eval
 }
 
 /// Whether more bits may succeed on a tree, and do so in reasonable time.
-fn is_worth_more_bits(error: &EvaluationError, tree: &Tree, few: usize) -> bool {
-    error.is_of_rounding() && is_small(tree, few)
+fn may_succeed_in_more_bits(error: &EvaluationError, tree: &Tree, max_primitives: usize) -> bool {
+    error.is_of_rounding() && is_small(tree, max_primitives)
 }
 
 /// The close call because of which a component is empty in f64 but a solid in more bits.
 fn remainder(tree: &Tree, known: &Evaluated<f64>, settings: &Settings) -> Option<CloseCall> {
-    let is_asked = known.brep.topology.faces.is_empty()
+    let is_needed = known.brep.topology.faces.is_empty()
         && known.decisions.coincident > 0
-        && is_small(tree, FEW_IN_106_BITS);
-    let mass = is_asked.then(|| fine_mass(tree, settings).ok())??;
+        && is_small(tree, MAX_PRIMITIVES_IN_106_BITS);
+    let mass = is_needed.then(|| fine_mass(tree, settings).ok())??;
     let written = settings.noise * settings.size;
     let noise = vanished::rounding(tree, &known.bounds).max(written);
     vanished::remainder(&mass, noise)

@@ -94,18 +94,17 @@ impl Evaluation {
             brep.append(&component.brep);
             decisions.add(&component.decisions);
         }
-        let coarsest = |resolutions: &mut dyn Iterator<Item = f64>| resolutions.fold(0.0, f64::max);
-        let view_resolutions: Option<Vec<f64>> = components
-            .iter()
-            .map(|known| known.view_resolution)
-            .collect();
+        let coarsest = |of: fn(&Self) -> Option<f64>| -> Option<f64> {
+            let all: Option<Vec<f64>> = components.iter().map(of).collect();
+            Some(all?.into_iter().fold(0.0, f64::max))
+        };
         let boxes = components.iter().map(|known| known.bounds);
         Self {
             brep,
             decisions,
-            resolution: coarsest(&mut components.iter().map(|known| known.resolution)),
+            resolution: coarsest(|known| Some(known.resolution)).unwrap_or_default(),
             bounds: boxes.fold(Aabb::EMPTY, |all, own| all.hull(&own)),
-            view_resolution: view_resolutions.map(|all| coarsest(&mut all.into_iter())),
+            view_resolution: coarsest(|known| known.view_resolution),
             mass: OnceLock::new(),
             integrals: Integrals::Components(components),
         }

@@ -1,5 +1,5 @@
-//! Convex polyhedra around faces, by which faces that do not intersect are told apart where their
-//! boxes overlap: k-DOPs (Klosowski et al. 1998) with directions of each face's own.
+//! Convex polyhedra around faces. They show that faces do not intersect although their boxes do:
+//! discrete oriented polytopes (Klosowski et al. 1998), with directions that follow each face.
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::curve::Line;
@@ -7,8 +7,8 @@ use premio_kernel::geometry::vector::{Length, rounded};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 
-/// The number of corners up to which every edge of a polygon gives a direction.
-const FEW_CORNERS: usize = 8;
+/// The maximum number of edges of a polygon that give a direction each.
+const MAX_EDGE_DIRECTIONS: usize = 8;
 
 /// The rounding of coordinates, in units of the precision of an f64.
 const ROUNDINGS: f64 = 64.0;
@@ -20,8 +20,8 @@ pub(super) struct FaceHull {
     corners: Vec<Vector3<f64>>,
     /// Unit directions, with the range of the corners along each.
     slabs: Vec<Slab>,
-    /// The largest coordinate.
-    far: f64,
+    /// The largest absolute coordinate.
+    max_coordinate: f64,
 }
 
 /// The points between two parallel planes.
@@ -42,7 +42,7 @@ impl FaceHull {
         let next = corners.iter().cycle().skip(1);
         let edges = corners.iter().zip(next).map(|(a, b)| b - a);
         let mut edges: Vec<Vector3<f64>> = edges.collect();
-        if corners.len() > FEW_CORNERS {
+        if corners.len() > MAX_EDGE_DIRECTIONS {
             edges.truncate(1);
             let (u, v) = (edges[0], normal.cross(&edges[0]));
             edges.extend([v, u + v, u - v]);
@@ -73,14 +73,14 @@ impl FaceHull {
         let coordinates = corners.iter().flatten();
         Self {
             slabs: slabs.collect(),
-            far: coordinates.fold(0.0, |most, x| most.max(x.abs())),
+            max_coordinate: coordinates.fold(0.0, |most, x| most.max(x.abs())),
             corners,
         }
     }
 
     /// Whether a plane of one of the two proves that they are more than `gap` apart.
     pub fn is_apart(&self, other: &Self, gap: f64) -> bool {
-        let gap = gap + ROUNDINGS * f64::EPSILON * self.far.max(other.far);
+        let gap = gap + ROUNDINGS * f64::EPSILON * self.max_coordinate.max(other.max_coordinate);
         let separates = |slab: &Slab, corners: &[Vector3<f64>]| {
             let [lo, hi] = range(corners, &slab.direction);
             (lo - slab.range[1]).is_beyond(gap) || (slab.range[0] - hi).is_beyond(gap)
@@ -99,7 +99,9 @@ impl FaceHull {
         let origin = Vector3::from(rounded(&line.origin));
         let along = line.direction.map(N::rounded);
         let [mut lo, mut hi] = [range[0].below(), range[1].above()];
-        let far = origin.iter().fold(self.far, |most, x| most.max(x.abs()));
+        let far = origin
+            .iter()
+            .fold(self.max_coordinate, |most, x| most.max(x.abs()));
         let far = far.max(lo.abs()).max(hi.abs());
         let rounding = ROUNDINGS * f64::EPSILON * far;
         let gap = gap + rounding;

@@ -118,24 +118,24 @@ pub(super) struct HalfSpaceModel<N: Float> {
 struct Pose<'a, N: Float> {
     placed: &'a PlacedPrimitive,
     turn: Matrix3<N>,
+    origin: Point3<N>,
     /// Whether the rotation is not one by quarter turns.
     is_oblique: bool,
 }
 
 impl<'a, N: Float> Pose<'a, N> {
     fn new(placed: &'a PlacedPrimitive) -> Self {
-        let entries = placed.motion.rotation_matrix();
-        let is_whole = |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry).is_one();
         Self {
             placed,
             turn: placed.motion.rounded_rotation(),
-            is_oblique: !entries.iter().flatten().all(is_whole),
+            origin: rounded_image(placed, &zero()),
+            is_oblique: !placed.motion.is_by_quarter_turns(),
         }
     }
 
     /// The position of a rounded point of the primitive's frame.
     fn rounded_point(&self, p: [N; 3]) -> Point3<N> {
-        self.point(zero()) + self.turn * Vector3::from(p)
+        self.origin + self.turn * Vector3::from(p)
     }
 
     /// The hull of a box in the primitive's frame; `None` if it is the box of space.
@@ -160,8 +160,7 @@ impl<'a, N: Float> Pose<'a, N> {
 
     /// The position of an exact point of the primitive's frame, rounded once.
     fn point(&self, p: [Rational; 3]) -> Point3<N> {
-        let q = self.placed.motion.apply_point(&p);
-        Point3::from(q.each_ref().map(N::nearest))
+        rounded_image(self.placed, &p)
     }
 
     fn axis(&self, i: usize) -> Vector3<N> {
@@ -231,13 +230,19 @@ impl<'a, N: Float> Pose<'a, N> {
     fn boxed(&self, lo: [N; 3], hi: [N; 3]) -> Aabb {
         let mid = Vector3::from_fn(|i, _| N::HALF * (lo[i] + hi[i]));
         let half = Vector3::from_fn(|i, _| N::HALF * (hi[i] - lo[i]));
-        let centre = self.point(zero()) + self.turn * mid;
+        let centre = self.origin + self.turn * mid;
         let reach = self.turn.map(N::abs) * half;
         Aabb {
             min: <[N; 3]>::from(centre - reach).map(N::below),
             max: <[N; 3]>::from(centre + reach).map(N::above),
         }
     }
+}
+
+/// The position of an exact point of a primitive's frame, rounded once.
+fn rounded_image<N: Float>(placed: &PlacedPrimitive, p: &[Rational; 3]) -> Point3<N> {
+    let q = placed.motion.apply_point(p);
+    Point3::from(q.each_ref().map(N::nearest))
 }
 
 fn zero() -> [Rational; 3] {
@@ -374,7 +379,7 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
             };
         }
     };
-    let section = Section::new(figure, &walls, map, pose.turn, pose.point(zero()));
+    let section = Section::new(figure, &walls, map, pose.turn, pose.origin);
     let swept = |[lo, hi]: [[N; 2]; 2]| match heights {
         Some([height, top]) => {
             let k = N::nearest(top);
@@ -392,17 +397,16 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
         let edge = &section.edges[wall.edge];
         let surface = pose.wall(wall);
         let [lo, hi] = swept(edge.bounds());
-        let hull = match (heights, wall.kind) {
-            (Some([height, top]), WallKind::Plane) => {
-                let corners = edge.swept_corners(N::nearest(height), N::nearest(top));
-                Some(pose.hull_of_polygon(corners.into_iter(), &surface))
-            }
-            _ => pose.hull_of_box(lo, hi),
-        };
         HalfSpace {
-            surface,
             bounds: pose.boxed(lo, hi),
-            hull,
+            hull: match (heights, wall.kind) {
+                (Some([height, top]), WallKind::Plane) => {
+                    let corners = edge.swept_corners(N::nearest(height), N::nearest(top));
+                    Some(pose.hull_of_polygon(corners.into_iter(), &surface))
+                }
+                _ => pose.hull_of_box(lo, hi),
+            },
+            surface,
         }
     }));
     let whole = section.bounds();
@@ -456,7 +460,7 @@ fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
 
 /// A polyhedron.
 fn faceted<N: Float>(leaf: NodeId, pose: &Pose<'_, N>, polyhedron: &Polyhedron) -> Solid<N> {
-    let facets = Facets::new(polyhedron, pose.turn, pose.point(zero()));
+    let facets = Facets::new(polyhedron, pose.turn, pose.origin);
     let side = |facet: usize| {
         let [lo, hi] = facets.bounds(facet);
         let normal = Vector3::from(polyhedron.normal(facet).each_ref().map(N::nearest));

@@ -6,8 +6,8 @@
 //! | --- | --- |
 //! | `settings` | what the options mean for the part |
 //! | `result_boxes` | boxes around the results of the tree's nodes |
-//! | `components` | the components that are apart; each passes the stages below by itself |
-//! | `concurrency` | several of them at a time |
+//! | `components` | the components that are apart; each passes the stages below separately |
+//! | `concurrency` | a parallel map over them |
 //! | `escalation` | f64, and more bits where fewer are inconclusive |
 //! | `near_cylinders` | refuses frustums that are nearly cylinders |
 //! | `vanished` | drops primitives thinner than the resolution |
@@ -134,14 +134,11 @@ pub enum Arithmetic {
 /// The default limit on curves and points of curves between the surfaces of a component.
 pub const MAX_ENTITIES: usize = 1 << 23;
 
-/// The number of surfaces of a part from which its components are worth threads of their own.
-const MANY_SIDES: usize = 256;
-
 /// The boundary of the solid that a tree describes; empty for an empty solid.
 ///
-/// Components whose boxes are apart are evaluated by themselves, in parallel if the part is large. Each is evaluated in
-/// f64, and if f64 is inconclusive, with the same resolution in 106 bits, and at last in 237 bits.
-/// Exact evaluation starts with 106 bits.
+/// Components whose boxes are apart are evaluated separately, in parallel if the part is large. Each
+/// is evaluated in f64, and if f64 is inconclusive, with the same resolution in 106 bits, and at
+/// last in 237 bits. Exact evaluation starts with 106 bits.
 ///
 /// # Errors
 /// The numbers, the distance from the origin, the resolution or the number of entities is beyond a
@@ -149,23 +146,47 @@ const MANY_SIDES: usize = 256;
 /// supported, or the computed boundary contradicts itself or the tree.
 pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, EvaluationError> {
     let boxes = ResultBoxes::new(tree);
-    let size = boxes.size_below_vast();
-    let settings = Settings::new(options, size.unwrap_or(boxes.primitives.diagonal()));
-    let resolution = settings.requested.unwrap_or(settings.default_resolution());
-    let gap = Predicates::new(resolution).reach::<f64>();
-    let Some(trees) = components(tree, &boxes, gap) else {
-        return evaluate_component(tree, size.is_some(), &settings);
+    let (whole, vast) = (boxes.primitives.diagonal(), boxes.size_below_vast());
+    if !tree.is_empty() && !whole.lies_between([1.0 / MAX_SIZE, MAX_SIZE]) {
+        return Err(EvaluationError::Size);
+    }
+    let settings = Settings::new(options, vast.unwrap_or(whole));
+    let trees = settings.gap().and_then(|gap| components(tree, &boxes, gap));
+    match trees {
+        Some(trees) => Ok(Evaluation::joined(separately(&trees, &settings)?)),
+        None => evaluate_component(tree, vast.is_some(), &settings),
+    }
+}
+
+/// The number of surfaces from which the components of a part have threads of their own.
+const MIN_SIDES_FOR_THREADS: usize = 256;
+
+/// The share of the entities that a component may have while others are evaluated.
+const ENTITY_SHARES: usize = 64;
+
+/// The boundaries of components. Several at a time have a share of the entities each; those that
+/// need more follow one by one.
+fn separately(trees: &[Tree], settings: &Settings) -> Result<Vec<Evaluation>, EvaluationError> {
+    let evaluate = |tree: &Tree, settings: &Settings| {
+        let vast = ResultBoxes::new(tree).size_below_vast();
+        evaluate_component(tree, vast.is_some(), settings)
     };
-    let evaluate = |tree: &Tree| {
-        let size = ResultBoxes::new(tree).size_below_vast();
-        evaluate_component(tree, size.is_some(), &settings)
+    if trees.iter().map(Tree::side_count).sum::<usize>() < MIN_SIDES_FOR_THREADS {
+        return trees.iter().map(|tree| evaluate(tree, settings)).collect();
+    }
+    let share = Settings {
+        entity_limit: settings.entity_limit / ENTITY_SHARES,
+        ..*settings
     };
-    let evaluations = match tree.side_count() > MANY_SIDES {
-        true => concurrency::map(&trees, evaluate),
-        false => trees.iter().map(evaluate).collect(),
-    };
-    let evaluations: Result<Vec<Evaluation>, _> = evaluations.into_iter().collect();
-    Ok(Evaluation::joined(evaluations?))
+    let first = concurrency::map(trees, |tree| evaluate(tree, &share));
+    let known = first
+        .into_iter()
+        .zip(trees)
+        .map(|(known, tree)| match known {
+            Err(EvaluationError::EntityLimit { .. }) => evaluate(tree, settings),
+            known => known,
+        });
+    known.collect()
 }
 
 /// Evaluates in one precision, with the resolution that the options give.
@@ -175,9 +196,6 @@ fn evaluated<N: Float>(tree: &Tree, settings: &Settings) -> Result<Evaluated<N>,
     }
     let solids = HalfSpaceModel::new(tree);
     let size = solids.bounds.diagonal();
-    if !size.lies_between([1.0 / LARGEST, LARGEST]) {
-        return Err(EvaluationError::Size);
-    }
     let resolution = settings.resolution::<N>(&solids.bounds)?;
     let predicates = match settings.zeros {
         CoincidencePolicy::Exact => Predicates::exact(resolution),
@@ -193,7 +211,7 @@ fn evaluated<N: Float>(tree: &Tree, settings: &Settings) -> Result<Evaluated<N>,
         radius: N::from_f64(0.75 * size),
     };
     near_cylinders::check(&solids, &extent, &predicates)?;
-    let generated = generated(tree, &solids, &extent, &predicates, settings.most)?;
+    let generated = generated(tree, &solids, &extent, &predicates, settings.entity_limit)?;
     let classified = classified(tree, &solids, generated, &predicates)?;
     Ok(Evaluated {
         brep: classified.brep,
@@ -288,4 +306,4 @@ fn check_rules<N: Float>(
 }
 
 /// The product of six lengths is within the range of f64, and so is its reciprocal.
-const LARGEST: f64 = 1e50;
+const MAX_SIZE: f64 = 1e50;

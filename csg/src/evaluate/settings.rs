@@ -3,7 +3,9 @@
 use super::{Arithmetic, EvaluationError, EvaluationOptions, MAX_ENTITIES};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::{CoincidencePolicy, Compare, RELATIVE_RESOLUTION};
+use premio_kernel::number::predicates::{
+    CoincidencePolicy, Compare, Predicates, RELATIVE_RESOLUTION,
+};
 
 /// The options of an evaluation, for every component of the part.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +20,8 @@ pub(super) struct Settings {
     pub zeros: CoincidencePolicy,
     /// The arithmetic of the decisions.
     pub digits: Arithmetic,
-    /// The maximum number of curves and points of curves.
-    pub most: usize,
+    /// The maximum number of curves and points of curves of a component.
+    pub entity_limit: usize,
 }
 
 impl Settings {
@@ -31,7 +33,7 @@ impl Settings {
             noise: options.noise.unwrap_or(0.0),
             zeros: options.zeros,
             digits: options.digits,
-            most: options.entity_limit.unwrap_or(MAX_ENTITIES),
+            entity_limit: options.entity_limit.unwrap_or(MAX_ENTITIES),
         }
     }
 
@@ -53,7 +55,20 @@ impl Settings {
 
     /// The resolution where none is requested and the part is near the origin.
     pub fn default_resolution(&self) -> f64 {
-        RELATIVE_RESOLUTION.max(self.noise) * self.size
+        self.resolution_for(self.size)
+    }
+
+    /// The default resolution for a size.
+    fn resolution_for(&self, size: f64) -> f64 {
+        RELATIVE_RESOLUTION.max(self.noise) * size
+    }
+
+    /// The distance beyond which faces are not compared; `None` if the requested resolution is
+    /// invalid.
+    pub fn gap(&self) -> Option<f64> {
+        let resolution = self.requested.unwrap_or(self.default_resolution());
+        let is_valid = resolution.lies_in([0.0, self.size]);
+        is_valid.then(|| Predicates::new(resolution).reach())
     }
 
     /// The requested resolution, or the default for a component in a box. The default is coarser if
@@ -66,8 +81,8 @@ impl Settings {
         if least.is_beyond(size * FARTHEST) {
             return Err(EvaluationError::TooFarFromOrigin { far, size });
         }
-        let default = RELATIVE_RESOLUTION.max(self.noise) * size;
-        let resolution = self.requested.unwrap_or(default.max(least));
+        let default = self.resolution_for(size).max(least);
+        let resolution = self.requested.unwrap_or(default);
         if !resolution.lies_in([least, most]) {
             return Err(EvaluationError::Resolution {
                 asked: resolution,

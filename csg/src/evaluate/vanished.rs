@@ -5,6 +5,7 @@ use crate::primitive::Primitive;
 use crate::tree::{PlacedPrimitive, Tree};
 use premio_kernel::brep::face_integrals::Mass;
 use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::motion::Motion;
 use premio_kernel::number::predicates::{CloseCall, Compare, Predicates};
 use premio_kernel::number::rational::{Rational, to_f64};
 
@@ -23,13 +24,13 @@ pub(super) fn list(tree: &Tree, predicates: &Predicates) {
     }
 }
 
-/// The close call that left a part empty: with a finer resolution it is a solid, thicker than the
+/// The close call that left a component empty: with a finer resolution it is a solid, thicker than the
 /// `noise` of the description.
 pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
     // A plate has two sides.
     let thickness = 2.0 * fine.volume / fine.area;
     thickness.is_beyond(noise).then(|| CloseCall {
-        question: "opposite faces of the part, of which nothing is left",
+        question: "opposite faces of a body, of which nothing is left",
         place: fine.centroid.into(),
         distance: thickness,
         local: false,
@@ -39,13 +40,8 @@ pub(super) fn remainder(fine: &Mass, noise: f64) -> Option<CloseCall> {
 /// The rounding error of faces that are meant to coincide. Rotations by other angles than quarter
 /// turns are rounded to the precision of an f64.
 pub(super) fn rounding(tree: &Tree, bounds: &Aabb) -> f64 {
-    let is_exact =
-        |entry: &Rational| entry.is_zero() || entry.is_one() || (-entry.clone()).is_one();
-    let is_quarter = |placed: &PlacedPrimitive| {
-        let matrix = placed.motion.rotation_matrix();
-        matrix.iter().flatten().all(is_exact)
-    };
-    match tree.leaves().all(|(_, placed)| is_quarter(placed)) {
+    let mut motions = tree.leaves().map(|(_, placed)| &placed.motion);
+    match motions.all(Motion::is_by_quarter_turns) {
         true => 0.0,
         false => f64::EPSILON * bounds.diagonal(),
     }

@@ -42,7 +42,7 @@ impl<N: Float> WallJoints<N> {
     }
 
     /// A contact moved to the joint of two walls in its strip; `None` if there is none.
-    pub fn moved(
+    pub fn contact_at_joint(
         &self,
         pair: [usize; 2],
         contact: &Branch<N>,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Note;
 
-/// Collects remarks; those that may be as many as the nodes are counted, and made once.
+/// Collects remarks. Remarks of a kind that any node may cause are counted, and made once.
 #[derive(Debug)]
 pub(super) struct Notes {
     notes: Vec<Note>,

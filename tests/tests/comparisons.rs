@@ -163,7 +163,7 @@ fn is_whole(e: &Expr) -> bool {
     match bare(e) {
         Expr::Lit(e) => matches!(e.lit, Lit::Int(_)),
         Expr::Binary(e) => is_whole(&e.left) || is_whole(&e.right),
-        Expr::MethodCall(e) => is_one_of(WHOLE_CALLS, &e.method),
+        Expr::MethodCall(e) => is_one_of(WHOLE_CALLS, &e.method) || yields_whole(e),
         Expr::Index(e) => matches!(bare(&e.expr), Expr::Field(_)) && is_whole(&e.expr),
         Expr::Field(e) => match &e.member {
             syn::Member::Named(name) => is_one_of(WHOLE_NAMES, name),
@@ -181,6 +181,17 @@ fn is_whole(e: &Expr) -> bool {
         },
         _ => false,
     }
+}
+
+/// Whether a call names an integer as the type of what it gives: `sum::<usize>()`.
+fn yields_whole(call: &syn::ExprMethodCall) -> bool {
+    let arguments = call.turbofish.iter().flat_map(|turbofish| &turbofish.args);
+    arguments.into_iter().any(|argument| match argument {
+        syn::GenericArgument::Type(syn::Type::Path(e)) => {
+            names(&e.path).iter().any(|n| is_one_of(WHOLE_TYPES, n))
+        }
+        _ => false,
+    })
 }
 
 /// Whether an expression is evidently an f64 or wider.
@@ -383,6 +394,7 @@ fn comparisons_of_doubles_are_seen() {
         "a.total_cmp(&b).is_lt()",
         "all.is_sorted_by(f64::le)",
         "all.iter().any(|t| *t > from)",
+        "all.iter().sum::<f64>() > limit",
         "assert!(x > y, \"{x}\")",
         "matches!(met, Some(m) | Old(m) if m.t <= hi)",
         "vec![x < y; 3]",
@@ -400,6 +412,7 @@ fn what_is_whole_or_exact_passes() {
         "depth >= 16",
         "self.depth[&a] >= self.depth[&b]",
         "(n as usize) <= most",
+        "all.iter().map(len).sum::<usize>() < most",
         "usize::from(a) < b",
         "p.degree() > least",
         "slope > Rational::ZERO",

@@ -75,6 +75,8 @@ pub(super) struct SpannedError {
     found: String,
     expected: String,
     help: Option<String>,
+    /// Whether circles have no exact result here, and polygons in their place have one.
+    is_about_circles: bool,
     /// The text that contains it, if it is not the one that the reader was given.
     text: Option<Arc<OtherText>>,
 }
@@ -93,6 +95,7 @@ impl SpannedError {
             found,
             expected,
             help: None,
+            is_about_circles: false,
             text: None,
         }
     }
@@ -106,6 +109,22 @@ impl SpannedError {
         Self {
             kind: ErrorKind::Limit,
             ..Self::input(span, found, expected)
+        }
+    }
+
+    /// Circles have no exact result here, and polygons in their place have one.
+    pub(super) fn about_circles(self, is_about_circles: bool) -> Self {
+        Self {
+            is_about_circles,
+            ..self
+        }
+    }
+
+    /// Adds advice where polygons in the place of circles have an exact result.
+    pub(super) fn help_with_circles(self, help: &str) -> Self {
+        match self.is_about_circles {
+            true => self.help(help),
+            false => self,
         }
     }
 

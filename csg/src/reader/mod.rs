@@ -13,9 +13,12 @@ mod notes;
 mod number;
 mod padl;
 mod pov;
+mod refusal;
+mod region;
 mod rigid_fit;
 mod scad;
 mod spanned;
+mod sweep;
 #[cfg(test)]
 mod tests;
 

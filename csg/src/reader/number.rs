@@ -57,7 +57,15 @@ pub(super) fn bad_length(
     value: Option<&Rational>,
     span: Range<usize>,
 ) -> SpannedError {
-    let found = value.map_or_else(|| "a wrong length".to_owned(), show);
+    let found = match (value, error) {
+        (Some(value), _) => show(value),
+        (None, PrimitiveError::AcrossAxis) => "a figure that crosses the axis".to_owned(),
+        (None, PrimitiveError::CircleAcrossAxis) => {
+            "an arc of a circle that reaches the axis".to_owned()
+        }
+        (None, PrimitiveError::ObliqueArc) => "an arc about another point".to_owned(),
+        (None, _) => "a wrong length".to_owned(),
+    };
     let expected = match error {
         PrimitiveError::NotPositive(what) => format!("a {what} greater than zero"),
         PrimitiveError::Negative(what) => format!("a {what} of zero or more"),
@@ -69,5 +77,9 @@ pub(super) fn bad_length(
         }
         PrimitiveError::ObliqueArc => "arcs about the origin, where a figure is scaled".to_owned(),
     };
-    SpannedError::input(span, found, expected)
+    let is_about_circles = matches!(
+        error,
+        PrimitiveError::CircleAcrossAxis | PrimitiveError::ObliqueArc
+    );
+    SpannedError::input(span, found, expected).about_circles(is_about_circles)
 }

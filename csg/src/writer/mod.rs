@@ -49,9 +49,6 @@ pub enum WriteError {
     /// The faces of polyhedra in `.csg` have no holes.
     #[error("`.csg` cannot represent a polyhedron with a hole in a face")]
     Holes,
-    /// `.padl` has no figures and no polyhedra.
-    #[error("`.padl` has no word for a prism, a revolution or a polyhedron")]
-    Figure,
     /// The text would be too long.
     #[error("a text of more than {MAX_TEXT} bytes")]
     TooLong,
@@ -79,7 +76,6 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     match format {
         Format::Csg if has_primitive(builder, part, has_arcs) => return Err(WriteError::Arcs),
         Format::Csg if has_primitive(builder, part, has_holes) => return Err(WriteError::Holes),
-        Format::Padl if has_primitive(builder, part, is_swept) => return Err(WriteError::Figure),
         _ => {}
     }
     match format {
@@ -108,14 +104,6 @@ fn has_holes(primitive: &Primitive) -> bool {
         }
         _ => false,
     }
-}
-
-/// Whether a primitive is a prism, a revolution or a polyhedron.
-fn is_swept(primitive: &Primitive) -> bool {
-    matches!(
-        primitive,
-        Primitive::Prism { .. } | Primitive::Revolution { .. } | Primitive::Polyhedron { .. }
-    )
 }
 
 /// Whether a part uses a primitive of some kind.

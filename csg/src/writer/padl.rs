@@ -8,6 +8,8 @@ use super::number::quotient;
 use super::turns::{AxisTurn, about_axes};
 use super::{Language, Use, WriteError, indent, push, walk};
 use crate::builder::{Builder, BuilderNode};
+use crate::figure::{Figure, FigureEdge};
+use crate::polyhedron::{Polyhedron, PolyhedronFace};
 use crate::primitive::Primitive;
 use crate::transform::TransformStep;
 use crate::tree::Operation;
@@ -137,9 +139,61 @@ fn call(primitive: &Primitive) -> String {
         }
         Primitive::Sphere { radius } => with("SPH", &[("R", radius)]),
         Primitive::Torus { major, minor } => with("TOR", &[("RMAJ", major), ("RMIN", minor)]),
-        // A description with one of these is refused before.
-        Primitive::Prism { .. } | Primitive::Revolution { .. } | Primitive::Polyhedron { .. } => {
-            String::new()
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => {
+            let top = match top.is_one() {
+                true => String::new(),
+                false => format!(", TOP={}", quotient(top)),
+            };
+            format!("PRI({}, H={}{top})", polygon(figure), quotient(height))
         }
+        Primitive::Revolution { figure, angle } => {
+            let angle = angle.as_ref().map_or(String::new(), |angle| {
+                format!(", ANGLE={}", quotient(angle.degrees()))
+            });
+            format!("REV({}{angle})", polygon(figure))
+        }
+        Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
     }
+}
+
+/// Numbers in brackets.
+fn tuple<'a>(numbers: impl IntoIterator<Item = &'a Rational>) -> String {
+    let numbers: Vec<String> = numbers.into_iter().map(quotient).collect();
+    format!("({})", numbers.join(", "))
+}
+
+/// A figure by its corners, with the circle of an arc at its start.
+fn polygon(figure: &Figure) -> String {
+    let corner = |edge: &FigureEdge| match &edge.arc {
+        None => tuple(&edge.start),
+        Some(arc) => {
+            let radius = arc.signed_radius();
+            tuple(edge.start.iter().chain(&arc.centre).chain([&radius]))
+        }
+    };
+    let contour = |edges: &[FigureEdge]| {
+        let corners: Vec<String> = edges.iter().map(corner).collect();
+        corners.join(", ")
+    };
+    let contours: Vec<String> = figure.contours().map(contour).collect();
+    format!("PGN({})", contours.join("; "))
+}
+
+/// A polyhedron by its points and the indices of its faces.
+fn polyhedron(of: &Polyhedron) -> String {
+    let corners = |corners: &Vec<usize>| {
+        let corners: Vec<String> = corners.iter().map(usize::to_string).collect();
+        corners.join(", ")
+    };
+    let face = |face: &PolyhedronFace| {
+        let loops: Vec<String> = face.loops.iter().map(corners).collect();
+        format!("({})", loops.join("; "))
+    };
+    let points: Vec<String> = of.points().iter().map(tuple).collect();
+    let faces: Vec<String> = of.faces().iter().map(face).collect();
+    format!("POLY({}; {})", points.join(", "), faces.join(", "))
 }

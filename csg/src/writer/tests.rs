@@ -59,6 +59,36 @@ fn csg_holds_quarters_of_degrees() {
     assert_same(PLAIN, Format::Padl, Format::Csg);
 }
 
+const FIGURES: &str =
+    "WALL = PGN((-4, -3), (4, -3, 4, 0, 3), (4, 3), (-4, 3); (1, 0, 0, 0, 1), (-1, 0, 0, 0, 1))
+CUP = REV(PGN((0, 0), (3, 0), (4, 5), (3, 1), (0, 1)), ANGLE=75.5)
+TENT = POLY((0,0,0), (1,0,0), (0,1,0), (0,0,1); (0,2,1), (0,1,3), (1,2,3), (2,0,3))
+PART = (PRI(WALL, H=2.5) UN PRI(PGN((0,0), (4,1), (1,4)), H=2, TOP=0.25) AT (MOVX=9, ROTX=30)
+ DIF CUP AT (ROTY=15) INT TENT)
+";
+
+#[test]
+fn figures_and_polyhedra_are_held() {
+    assert_same(FIGURES, Format::Padl, Format::Json);
+    assert_same(FIGURES, Format::Padl, Format::Padl);
+    // A cup that is mirrored starts where it ended.
+    let mirror = "multmatrix([[1,0,0,0],[0,-1,0,0],[0,0,1,0],[0,0,0,1]])";
+    let cup = "rotate_extrude(angle=75.5) polygon(points=[[1,0],[3,0],[2,2]]);";
+    assert_same(&format!("{mirror} {cup}"), Format::Csg, Format::Padl);
+    assert_snapshot!(written(FIGURES, Format::Padl, Format::Padl), @"
+    PART = (
+      (
+        (
+          PRI(PGN((-4, -3), (4, -3, 4, 0, 3), (4, 3), (-4, 3); (1, 0, 0, 0, -1), (-1, 0, 0, 0, -1)), H=2.5)
+          UN PRI(PGN((0, 0), (4, 1), (1, 4)), H=2, TOP=0.25) AT (MOVX=9, ROTX=30)
+        )
+        DIF REV(PGN((0, 0), (3, 0), (4, 5), (3, 1), (0, 1)), ANGLE=75.5) AT (ROTY=15)
+      )
+      INT POLY((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1); (0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
+    )
+    ");
+}
+
 #[test]
 fn a_part_used_twice_has_a_name() {
     assert_snapshot!(written(PADL, Format::Padl, Format::Padl), @"

@@ -4,9 +4,8 @@ use std::rc::Rc;
 
 use super::super::error::SpannedError;
 use super::super::lexer::Lexeme;
-use super::code::{Call, ParametricPart, Step};
-use super::keywords::{Function, MOTIONS, Shape};
-use crate::tree::Operation;
+use super::code::{Call, Joining, ParametricPart, Step};
+use super::keywords::{Construction, Function, MOTIONS, Outline, Shape};
 use premio_text::escape::quote;
 
 /// The context of an expression.
@@ -25,6 +24,10 @@ pub(super) enum Bracket {
     Motions(MotionsBracket),
     Function(FunctionBracket),
     Part(PartBracket),
+    Construction(ConstructionBracket),
+    Hull(HullBracket),
+    List(ListBracket),
+    Tuple(TupleBracket),
     Range(LoopHead),
     LoopBody(LoopBody),
 }
@@ -63,10 +66,51 @@ pub(super) struct PartBracket {
     pub(super) part: Rc<ParametricPart>,
     pub(super) name: Lexeme,
     pub(super) open: Lexeme,
-    /// The slots of the arguments, in the order written.
-    pub(super) given: Vec<usize>,
+    pub(super) arguments: ArgumentList,
+}
+
+/// The arguments of a figure, or of a solid of a figure.
+#[derive(Debug)]
+pub(super) struct ConstructionBracket {
+    pub(super) construction: Construction,
+    pub(super) name: Lexeme,
+    pub(super) open: Lexeme,
+    pub(super) arguments: ArgumentList,
+}
+
+/// The operands of a convex hull.
+#[derive(Debug)]
+pub(super) struct HullBracket {
+    pub(super) name: Lexeme,
+    pub(super) open: Lexeme,
+    pub(super) count: usize,
+}
+
+/// The tuples of a list.
+#[derive(Debug)]
+pub(super) struct ListBracket {
+    pub(super) outline: Outline,
+    pub(super) name: Lexeme,
+    pub(super) open: Lexeme,
+    /// Whether the current item is a loop, which appends its tuples itself.
+    pub(super) contains_loop: bool,
+}
+
+/// The numbers of a tuple.
+#[derive(Debug)]
+pub(super) struct TupleBracket {
+    pub(super) open: Lexeme,
+    /// The counts of numbers between semicolons.
+    pub(super) counts: Vec<usize>,
+}
+
+/// Arguments that have been read, by name or by position.
+#[derive(Debug, Default)]
+pub(super) struct ArgumentList {
+    /// The indices of the arguments, in the order written.
+    given: Vec<usize>,
     /// Whether an argument with a name has been read.
-    pub(super) named: bool,
+    named: bool,
 }
 
 /// What of a range has been read.
@@ -83,18 +127,17 @@ pub(super) struct LoopHead {
     pub(super) keyword: Lexeme,
     pub(super) variable: Lexeme,
     pub(super) stage: RangeStage,
-    /// The operation that joins the solids.
-    pub(super) operation: Operation,
+    pub(super) joining: Joining,
 }
 
 /// The body of a loop: one operand.
 #[derive(Debug)]
 pub(super) struct LoopBody {
     pub(super) keyword: Lexeme,
-    pub(super) operation: Operation,
+    pub(super) joining: Joining,
     /// The index of the loop's first step.
     pub(super) begin: usize,
-    /// Whether the body is another loop, which joins the solids itself.
+    /// Whether the body is another loop, which joins its operands itself.
     pub(super) contains_loop: bool,
 }
 
@@ -109,6 +152,10 @@ impl Bracket {
             Self::Motions(bracket) => Some(bracket.open),
             Self::Function(bracket) => Some(bracket.open),
             Self::Part(bracket) => Some(bracket.open),
+            Self::Construction(bracket) => Some(bracket.open),
+            Self::Hull(bracket) => Some(bracket.open),
+            Self::List(bracket) => Some(bracket.open),
+            Self::Tuple(bracket) => Some(bracket.open),
         }
     }
 }
@@ -146,17 +193,9 @@ impl PrimitiveBracket {
 
     /// The step that makes the primitive.
     pub(super) fn end(self, close: Lexeme) -> Result<Step, SpannedError> {
-        let required = self.shape.arguments().iter().take(self.shape.required());
-        let missing = required
-            .enumerate()
-            .filter(|(i, _)| !self.given.contains(i));
-        let missing: Vec<&str> = missing.map(|(_, name)| *name).collect();
-        if missing.is_empty() {
-            return Ok(Step::Primitive(self.shape, self.given.into()));
-        }
-        let keyword = self.shape.keyword();
-        let expected = format!("the argument `{}` of `{keyword}`", missing.join("`, `"));
-        Err(SpannedError::input(close.span(), "`)`", expected))
+        let required = &self.shape.arguments()[..self.shape.required()];
+        check_required(self.shape.keyword(), required, &self.given, close)?;
+        Ok(Step::Primitive(self.shape, self.given.into()))
     }
 }
 
@@ -193,6 +232,87 @@ impl FunctionBracket {
     }
 }
 
+impl ArgumentList {
+    fn add_named(&mut self, index: usize, text: &str, lexeme: Lexeme) -> Result<(), SpannedError> {
+        if self.given.contains(&index) {
+            return Err(second_time(text, lexeme));
+        }
+        self.named = true;
+        self.given.push(index);
+        Ok(())
+    }
+
+    /// Adds an argument without a name, of at most `count` arguments; an error says what was found.
+    fn add_next(&mut self, count: usize) -> Result<(), &'static str> {
+        if self.named {
+            return Err("an argument without a name after one with a name");
+        }
+        if self.given.len() == count {
+            return Err("one argument too many");
+        }
+        self.given.push(self.given.len());
+        Ok(())
+    }
+}
+
+/// The error at the end of arguments of which required ones are missing.
+fn check_required(
+    word: &str,
+    required: &[&str],
+    given: &[usize],
+    close: Lexeme,
+) -> Result<(), SpannedError> {
+    let missing = required.iter().enumerate();
+    let missing = missing.filter(|(i, _)| !given.contains(i));
+    let missing: Vec<&str> = missing.map(|(_, name)| *name).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let expected = format!("the argument `{}` of `{word}`", missing.join("`, `"));
+    Err(SpannedError::input(close.span(), "`)`", expected))
+}
+
+impl ConstructionBracket {
+    /// An argument's name has been read.
+    pub(super) fn begin_named(&mut self, text: &str, lexeme: Lexeme) -> Result<(), SpannedError> {
+        let index = index_of(self.construction.arguments(), text, lexeme)?;
+        self.arguments.add_named(index, text, lexeme)
+    }
+
+    /// An argument without a name begins.
+    pub(super) fn begin_next(&mut self, lexeme: Lexeme) -> Result<(), SpannedError> {
+        let known = self.construction.arguments();
+        let added = self.arguments.add_next(known.len());
+        added.map_err(|found| {
+            let word = self.construction.word();
+            let expected = format!("an argument of `{word}`, one of `{}`", known.join("`, `"));
+            SpannedError::input(lexeme.span(), found, expected)
+        })
+    }
+
+    /// The step that makes the figure or the solid.
+    pub(super) fn end(self, close: Lexeme) -> Result<Step, SpannedError> {
+        let construction = self.construction;
+        let required = &construction.arguments()[..construction.required()];
+        let given = self.arguments.given;
+        check_required(construction.word(), required, &given, close)?;
+        Ok(Step::Construct(construction, given.into()))
+    }
+}
+
+impl HullBracket {
+    /// The step that makes the hull.
+    pub(super) fn end(self, close: Lexeme) -> Result<Step, SpannedError> {
+        match self.count {
+            0 => {
+                let expected = "a solid or a figure for `HULL`";
+                Err(SpannedError::input(close.span(), "`)`", expected))
+            }
+            count => Ok(Step::Hull(count)),
+        }
+    }
+}
+
 impl PartBracket {
     fn known(&self) -> impl Iterator<Item = &str> {
         self.part
@@ -208,26 +328,14 @@ impl PartBracket {
             let fault = SpannedError::input(lexeme.span(), found, self.expected());
             return Err(fault.suggest(text, self.known()));
         };
-        if self.given.contains(&slot) {
-            return Err(second_time(text, lexeme));
-        }
-        self.named = true;
-        self.given.push(slot);
-        Ok(())
+        self.arguments.add_named(slot, text, lexeme)
     }
 
     /// An argument without a name begins.
     pub(super) fn begin_next(&mut self, lexeme: Lexeme) -> Result<(), SpannedError> {
-        if self.named {
-            let found = "an argument without a name after one with a name";
-            return Err(SpannedError::input(lexeme.span(), found, self.expected()));
-        }
-        if self.given.len() == self.part.parameters.len() {
-            let found = "one argument too many";
-            return Err(SpannedError::input(lexeme.span(), found, self.expected()));
-        }
-        self.given.push(self.given.len());
-        Ok(())
+        let count = self.part.parameters.len();
+        let added = self.arguments.add_next(count);
+        added.map_err(|found| SpannedError::input(lexeme.span(), found, self.expected()))
     }
 
     /// What arguments the part takes.
@@ -243,7 +351,8 @@ impl PartBracket {
     /// The step that evaluates the part.
     pub(super) fn end(self, close: Lexeme) -> Result<Step, SpannedError> {
         let parameters = self.part.parameters.iter().enumerate();
-        let missing = parameters.filter(|(i, p)| !p.has_default && !self.given.contains(i));
+        let missing =
+            parameters.filter(|(i, p)| !p.has_default && !self.arguments.given.contains(i));
         let missing: Vec<&str> = missing.map(|(_, parameter)| &*parameter.name).collect();
         if !missing.is_empty() {
             let name = &self.part.name;
@@ -252,7 +361,7 @@ impl PartBracket {
         }
         Ok(Step::Call(Box::new(Call {
             part: self.part,
-            arguments: self.given,
+            arguments: self.arguments.given,
         })))
     }
 }

@@ -10,6 +10,9 @@ pub(super) const MAX_SOLIDS: u64 = 250_000;
 /// The largest number of other steps, in which a long number counts for several.
 pub(super) const MAX_STEPS: u64 = 10_000_000;
 
+/// The largest number of edges of figures, each counted as often as it is handled.
+pub(super) const MAX_EDGES: usize = 2_000_000;
+
 /// The length of a number that counts for one step, in bits.
 const STEP_BITS: usize = 256;
 
@@ -21,6 +24,7 @@ const FUNCTION_STEPS: u64 = 32;
 pub(super) struct Budget {
     solids: u64,
     steps: u64,
+    edges: usize,
 }
 
 impl Budget {
@@ -34,6 +38,21 @@ impl Budget {
     pub(super) fn count_solid(&mut self, place: &Range<usize>) -> Result<(), SpannedError> {
         self.solids += 1;
         self.check(place)
+    }
+
+    /// Counts edges of figures that are moved, combined or swept.
+    pub(super) fn count_edges(
+        &mut self,
+        count: usize,
+        place: &Range<usize>,
+    ) -> Result<(), SpannedError> {
+        self.edges = self.edges.saturating_add(count);
+        if self.edges <= MAX_EDGES {
+            return Ok(());
+        }
+        let found = "edges of figures beyond the limit";
+        let expected = format!("at most {MAX_EDGES}, each counted as often as it is used");
+        Err(SpannedError::limit(place.clone(), found, expected))
     }
 
     /// Counts the value of a function, by the length of its argument.

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use premio_kernel::number::rational::Rational;
 
 use super::expression::Operator;
-use super::keywords::{Function, Shape};
+use super::keywords::{Construction, Function, Outline, Shape};
 use crate::tree::Operation;
 
 /// A step of an evaluation. Operands are taken from the stack, and the result is pushed.
@@ -31,8 +31,20 @@ pub(super) enum Step {
     Group,
     Call(Box<Call>),
     Begin(Box<LoopStart>),
-    /// Joins a solid to the one before the loop.
-    Join(Operation),
+    /// Joins what a loop gives to what is before the loop.
+    Join(Joining),
+    /// A figure or a solid of a figure, with the indices of its arguments in the order written.
+    Construct(Construction, Box<[usize]>),
+    /// The convex hull of a number of operands.
+    Hull(usize),
+    /// A list without tuples.
+    List,
+    /// A tuple of numbers, by their counts between semicolons.
+    Tuple(Box<[usize]>),
+    /// Begins the second or a later part of a list.
+    Separate,
+    /// What a list describes.
+    Outline(Outline),
     /// Continues at a step with the next number of the innermost loop, if there is one.
     Next(usize),
     /// Continues at a step if an argument was given for a parameter.
@@ -59,13 +71,21 @@ pub(super) struct Call {
     pub(super) arguments: Vec<usize>,
 }
 
+/// How a loop joins what it gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Joining {
+    Set(Operation),
+    /// Tuples are appended to a list.
+    Append,
+}
+
 /// The start of a loop.
 #[derive(Debug)]
 pub(super) struct LoopStart {
     pub(super) variable: Rc<str>,
     pub(super) slot: usize,
     pub(super) has_step: bool,
-    pub(super) operation: Operation,
+    pub(super) joining: Joining,
     /// The index of the step after the loop.
     pub(super) exit: usize,
 }

@@ -1,20 +1,67 @@
 //! Values and operators of `.padl`, and the evaluation of operators.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::number::{check_length, show};
+use super::super::region::Region;
+use super::super::spanned::Spanned;
 use super::keywords::operation_word;
-use crate::builder::{Builder, SolidId};
+use crate::builder::SolidId;
 use crate::tree::Operation;
 
-/// A number or a solid.
+/// The value of an expression.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
     Number(Rational),
     Solid(SolidId),
+    /// A figure of the plane; `None` if it is empty.
+    Figure(Option<Rc<Region>>),
+    /// A tuple of a list.
+    Tuple(TupleValue),
+    /// A list that is being read.
+    List(ListValue),
+}
+
+/// A tuple of numbers, with groups between semicolons.
+#[derive(Debug, Clone)]
+pub(super) struct TupleValue {
+    pub(super) groups: Box<[Vec<Spanned<Rational>>]>,
+}
+
+impl TupleValue {
+    pub(super) fn describe(&self) -> String {
+        let counts: Vec<usize> = self.groups.iter().map(Vec::len).collect();
+        match counts[..] {
+            [1] => "a tuple of one number".to_owned(),
+            [count] => format!("a tuple of {count} numbers"),
+            _ => "a tuple with semicolons".to_owned(),
+        }
+    }
+}
+
+/// A list of tuples, with parts between semicolons.
+#[derive(Debug, Clone)]
+pub(super) struct ListValue {
+    pub(super) parts: Vec<Vec<Spanned<TupleValue>>>,
+}
+
+impl ListValue {
+    /// A list without tuples.
+    pub(super) fn new() -> Self {
+        Self {
+            parts: vec![Vec::new()],
+        }
+    }
+
+    pub(super) fn append(&mut self, tuple: Spanned<TupleValue>) {
+        if let Some(part) = self.parts.last_mut() {
+            part.push(tuple);
+        }
+    }
 }
 
 impl Value {
@@ -22,6 +69,9 @@ impl Value {
         match self {
             Self::Number(number) => show(number).replacen("the value", "the number", 1),
             Self::Solid(_) => "a solid".to_owned(),
+            Self::Figure(_) => "a figure".to_owned(),
+            Self::Tuple(tuple) => tuple.describe(),
+            Self::List(_) => "a list".to_owned(),
         }
     }
 }
@@ -54,6 +104,24 @@ impl Operand {
                 format!("a solid {what_for}"),
             )),
         }
+    }
+
+    /// The figure; the empty solid counts as an empty figure.
+    pub(super) fn figure(self, what_for: &str) -> Result<Option<Rc<Region>>, SpannedError> {
+        match self.value {
+            Value::Figure(figure) => Ok(figure),
+            Value::Solid(part) if part.is_empty() => Ok(None),
+            other => Err(SpannedError::input(
+                self.span,
+                other.describe(),
+                format!("a figure {what_for}"),
+            )),
+        }
+    }
+
+    /// Whether it is a figure.
+    pub(super) fn is_figure(&self) -> bool {
+        matches!(self.value, Value::Figure(_))
     }
 }
 
@@ -137,20 +205,15 @@ pub(super) fn negate(operand: Operand) -> Result<Operand, SpannedError> {
     Ok(Operand { value, span })
 }
 
+/// Applies an operator of numbers.
 pub(super) fn apply(
     operator: Operator,
     left: Operand,
     right: Operand,
-    builder: &mut Builder,
 ) -> Result<Operand, SpannedError> {
     let span = left.span.start..right.span.end;
     let side = |side: &str| format!("{side} `{}`", operator.text());
     let (before, after) = (side("before"), side("after"));
-    if let Operator::Set(op) = operator {
-        let parts = [left.solid(&before)?, right.solid(&after)?];
-        let value = Value::Solid(builder.operation(op, &parts));
-        return Ok(Operand { value, span });
-    }
     let place = right.span.clone();
     let (a, b) = (left.number(&before)?, right.number(&after)?);
     let value = match operator {

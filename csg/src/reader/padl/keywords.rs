@@ -1,4 +1,5 @@
-//! The words of `.padl`: primitives, operators, motions and functions, and what arguments they take.
+//! The words of `.padl`: primitives, figures, operators, motions and functions, and what arguments
+//! they take.
 
 use crate::tree::Operation;
 
@@ -117,18 +118,80 @@ impl Function {
     }
 }
 
+/// A word that makes a figure, or a solid of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Construction {
+    Rectangle,
+    Disc,
+    Offset,
+    Prism,
+    Revolution,
+}
+
+impl Construction {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Rectangle => "SQU",
+            Self::Disc => "CIR",
+            Self::Offset => "OFF",
+            Self::Prism => "PRI",
+            Self::Revolution => "REV",
+        }
+    }
+
+    /// The arguments; those after [`Construction::required`] may be left out.
+    pub(super) fn arguments(self) -> &'static [&'static str] {
+        match self {
+            Self::Rectangle => &["X", "Y"],
+            Self::Disc => &["R"],
+            Self::Offset => &["FIGURE", "R", "DELTA", "CHAMFER"],
+            Self::Prism => &["FIGURE", "H", "TOP"],
+            Self::Revolution => &["FIGURE", "ANGLE"],
+        }
+    }
+
+    pub(super) fn required(self) -> usize {
+        match self {
+            Self::Rectangle | Self::Prism => 2,
+            Self::Disc | Self::Offset | Self::Revolution => 1,
+        }
+    }
+}
+
+/// A word that makes a figure or a solid from lists of tuples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outline {
+    Polygon,
+    Polyhedron,
+}
+
+impl Outline {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Polygon => "PGN",
+            Self::Polyhedron => "POLY",
+        }
+    }
+}
+
 /// A word with a meaning that a name of the file takes from it.
 ///
 /// It is not reserved: files used such names before the words were added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Predefined {
     Function(Function),
+    Construction(Construction),
+    Outline(Outline),
+    Hull,
     Pi,
     For,
 }
 
 /// All predefined words, in the spelling of messages.
-pub(super) const PREDEFINED: [&str; 8] = ["sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR"];
+pub(super) const PREDEFINED: [&str; 16] = [
+    "sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR", "SQU", "CIR", "PGN", "OFF", "PRI",
+    "REV", "POLY", "HULL",
+];
 
 impl Predefined {
     pub(super) fn new(word: &str) -> Option<Self> {
@@ -139,6 +202,14 @@ impl Predefined {
             "SQRT" => Self::Function(Function::SquareRoot),
             "MIN" => Self::Function(Function::Minimum),
             "MAX" => Self::Function(Function::Maximum),
+            "SQU" => Self::Construction(Construction::Rectangle),
+            "CIR" => Self::Construction(Construction::Disc),
+            "OFF" => Self::Construction(Construction::Offset),
+            "PRI" => Self::Construction(Construction::Prism),
+            "REV" => Self::Construction(Construction::Revolution),
+            "PGN" => Self::Outline(Outline::Polygon),
+            "POLY" => Self::Outline(Outline::Polyhedron),
+            "HULL" => Self::Hull,
             "PI" => Self::Pi,
             "FOR" => Self::For,
             _ => return None,

@@ -1,11 +1,11 @@
-//! `FOR`: the operands of a set operation, one for every number of a range.
+//! `FOR`: the operands of a set operation, or the tuples of a list, one for every number of a range.
 
 use std::rc::Rc;
 
 use super::super::error::SpannedError;
 use super::super::lexer::{Lexeme, Token};
 use super::brackets::{Bracket, LoopBody, LoopHead, RangeStage};
-use super::code::{Instruction, LoopStart, Step};
+use super::code::{Instruction, Joining, LoopStart, Step};
 use super::keywords::Keyword;
 use super::parser::{Frame, Parser};
 use crate::tree::Operation;
@@ -25,7 +25,7 @@ impl RangeStage {
 impl Parser<'_, '_, '_> {
     /// Begins a loop after its keyword.
     pub(super) fn begin_loop(&mut self, keyword: Lexeme) -> Result<(), SpannedError> {
-        let operation = self.operation_of_loop(keyword)?;
+        let joining = self.joining_of_loop(keyword)?;
         let variable = self.cursor.next();
         if variable.token != Token::Name {
             let expected = "a variable, as in `FOR i=0..7: HOLE`";
@@ -37,33 +37,42 @@ impl Parser<'_, '_, '_> {
             keyword,
             variable,
             stage: RangeStage::First,
-            operation,
+            joining,
         }));
         Ok(())
     }
 
-    /// The operation in which a loop stands; the union, where it stands first.
-    fn operation_of_loop(&mut self, keyword: Lexeme) -> Result<Operation, SpannedError> {
+    /// How a loop joins what it gives: by the operation before it, by a union where it stands first,
+    /// or to a list.
+    fn joining_of_loop(&mut self, keyword: Lexeme) -> Result<Joining, SpannedError> {
         let Some(Frame {
             bracket,
             expression,
         }) = self.frames.last_mut()
         else {
-            return Ok(Operation::Union);
+            return Ok(Joining::Set(Operation::Union));
         };
         if let Some(operation) = expression.take_operation() {
-            return Ok(operation);
+            return Ok(Joining::Set(operation));
         }
         if !expression.has_no_operator() {
             let expected = "a number; `FOR` stands first or after `UN`, `INT` or `DIF`";
             return Err(self.cursor.unexpected(keyword, expected));
         }
-        if let Bracket::LoopBody(outer) = bracket {
-            outer.contains_loop = true;
-            return Ok(outer.operation);
+        match bracket {
+            Bracket::LoopBody(outer) => {
+                outer.contains_loop = true;
+                Ok(outer.joining)
+            }
+            Bracket::List(list) => {
+                list.contains_loop = true;
+                Ok(Joining::Append)
+            }
+            _ => {
+                self.emit(Step::Empty, keyword.span())?;
+                Ok(Joining::Set(Operation::Union))
+            }
         }
-        self.emit(Step::Empty, keyword.span())?;
-        Ok(Operation::Union)
     }
 
     /// Checks the name of a parameter or a loop variable.
@@ -119,7 +128,7 @@ impl Parser<'_, '_, '_> {
             keyword,
             variable,
             stage,
-            operation,
+            joining,
         } = head;
         let name: Rc<str> = self.cursor.text(variable).into();
         let slot = self.session.scope.push_local(&name, variable.span())?;
@@ -132,7 +141,7 @@ impl Parser<'_, '_, '_> {
             variable: name,
             slot,
             has_step: stage == RangeStage::Step,
-            operation,
+            joining,
             exit: 0,
         };
         let span = keyword.span().start..self.cursor.previous_end();
@@ -140,7 +149,7 @@ impl Parser<'_, '_, '_> {
         self.cursor.skip_newlines();
         self.open(Bracket::LoopBody(LoopBody {
             keyword,
-            operation,
+            joining,
             begin,
             contains_loop: false,
         }));
@@ -155,7 +164,7 @@ impl Parser<'_, '_, '_> {
         };
         let span = body.keyword.span().start..self.cursor.previous_end();
         if !body.contains_loop {
-            self.emit(Step::Join(body.operation), span.clone())?;
+            self.emit(Step::Join(body.joining), span.clone())?;
         }
         self.emit(Step::Next(body.begin + 1), span)?;
         let after = self.recorded.len();

@@ -9,14 +9,15 @@ use super::super::error::SpannedError;
 use super::super::number::{check_length, show};
 use super::super::spanned::Spanned;
 use super::budget::Budget;
-use super::code::{Call, Code, Instruction, LoopStart, ParametricPart, PartBody, Step};
-use super::expression::{Operand, Operator, Value, apply, negate};
+use super::code::{Call, Code, Instruction, Joining, LoopStart, ParametricPart, PartBody, Step};
+use super::expression::{ListValue, Operand, Operator, Value, apply, negate};
 use super::functions::{self, FunctionValue};
 use super::keywords::{Function, Shape, operation_word};
-use super::primitives::{primitive, push_motion};
+use super::primitives::{PLANE_MOTIONS, not_in_plane, primitive, push_motion};
 use super::remarks::Remarks;
 use crate::builder::{Builder, SolidId};
 use crate::transform::Transform;
+use crate::tree::Operation;
 
 /// A loop or a use of a part that is being evaluated.
 #[derive(Debug)]
@@ -76,7 +77,7 @@ pub(super) struct Machine {
     /// The first slot of the current use.
     base: usize,
     activities: Vec<Activity>,
-    budget: Budget,
+    pub(super) budget: Budget,
 }
 
 impl Machine {
@@ -132,8 +133,13 @@ impl Machine {
         let place = self.activities.first().map(Activity::span);
         let place = place.unwrap_or(&instruction.span);
         match instruction.step {
-            Step::Primitive(..) | Step::Place(_) | Step::Join(_) => self.budget.count_solid(place),
+            Step::Primitive(..) | Step::Place(_) | Step::Join(Joining::Set(_)) => {
+                self.budget.count_solid(place)
+            }
             Step::Apply(Operator::Set(_)) => self.budget.count_solid(place),
+            Step::Construct(..) | Step::Hull(_) | Step::Outline(_) => {
+                self.budget.count_solid(place)
+            }
             _ => self.budget.count_step(place),
         }
     }
@@ -174,6 +180,14 @@ impl Machine {
             Step::Apply(_) | Step::Join(_) | Step::Primitive(..) | Step::Place(_) => {
                 self.solid_step(instruction)?;
             }
+            Step::Construct(construction, arguments) => {
+                self.construct(*construction, arguments, span)?;
+            }
+            Step::Hull(count) => self.hull(*count, span)?,
+            Step::List => self.push(Value::List(ListValue::new()), span),
+            Step::Tuple(counts) => self.tuple(counts, span)?,
+            Step::Separate => self.separate(),
+            Step::Outline(outline) => self.outline(*outline, span)?,
         }
         Ok(Flow::Next)
     }
@@ -197,24 +211,49 @@ impl Machine {
         match &instruction.step {
             Step::Apply(operator) => {
                 let (right, left) = (self.pop(span), self.pop(span));
-                let result = apply(*operator, left, right, &mut self.builder)?;
+                if let Operator::Set(operation) = operator {
+                    let word = operation_word(*operation);
+                    let sides = ["before", "after"].map(|side| format!("{side} `{word}`"));
+                    let whole = left.span.start..right.span.end;
+                    let value = self.combine(*operation, [left, right], &sides, &whole)?;
+                    self.push(value, &whole);
+                    return Ok(());
+                }
+                let result = apply(*operator, left, right)?;
                 if let Value::Number(number) = &result.value {
                     self.budget.count_bits(bits(number));
                 }
                 self.stack.push(result);
             }
-            Step::Join(operation) => {
-                let right = self.pop(span);
-                let right = right.solid("after `FOR`")?;
-                let left = self.pop(span).solid("before `FOR`")?;
-                let joined = self.builder.operation(*operation, &[left, right]);
-                self.push(Value::Solid(joined), span);
+            Step::Join(Joining::Append) => self.append(span)?,
+            Step::Join(Joining::Set(operation)) => {
+                let (right, left) = (self.pop(span), self.pop(span));
+                let sides = ["before `FOR`", "after `FOR`"].map(str::to_owned);
+                let value = self.combine(*operation, [left, right], &sides, span)?;
+                self.push(value, span);
             }
             Step::Primitive(shape, arguments) => self.primitive(*shape, arguments, span)?,
             Step::Place(motions) => self.place(motions, span)?,
             _ => {}
         }
         Ok(())
+    }
+
+    /// A set operation on solids, or on figures.
+    fn combine(
+        &mut self,
+        operation: Operation,
+        [left, right]: [Operand; 2],
+        [before, after]: &[String; 2],
+        span: &Range<usize>,
+    ) -> Result<Value, SpannedError> {
+        if left.is_figure() || right.is_figure() {
+            let right = right.figure(after)?;
+            return self.combine_figures(operation, left.figure(before)?, right, span);
+        }
+        let right = right.solid(after)?;
+        let parts = [left.solid(before)?, right];
+        Ok(Value::Solid(self.builder.operation(operation, &parts)))
     }
 
     fn primitive(
@@ -235,14 +274,24 @@ impl Machine {
         let values = self.pop_many(motions.len());
         let operand = self.pop(span);
         let start = operand.span.start;
-        let solid = operand.solid("before `AT`")?;
+        let is_plane = operand.is_figure();
         let mut moves = Transform::new();
         for (&motion, value) in motions.iter().zip(values) {
+            if is_plane && !PLANE_MOTIONS.contains(&motion) {
+                return Err(not_in_plane(motion, value.span));
+            }
             let bits = push_motion(&mut moves, motion, value)?;
             self.budget.count_bits(bits);
         }
-        let moved = self.builder.moved(solid, moves);
-        self.push(Value::Solid(moved), &(start..span.end));
+        let place = start..span.end;
+        let value = match is_plane {
+            true => self.move_figure(operand.figure("before `AT`")?, &moves, &place)?,
+            false => {
+                let solid = operand.solid("before `AT`")?;
+                Value::Solid(self.builder.moved(solid, moves))
+            }
+        };
+        self.push(value, &place);
         Ok(())
     }
 
@@ -308,8 +357,10 @@ impl Machine {
             let expected = "a step other than zero";
             return Err(SpannedError::input(step.span, "the number 0", expected));
         }
-        if let Some(before) = self.stack.last() {
-            let word = operation_word(start.operation);
+        if let (Joining::Set(operation), Some(before)) = (start.joining, self.stack.last())
+            && let Value::Number(_) = before.value
+        {
+            let word = operation_word(operation);
             before.clone().solid(&format!("before `{word}`"))?;
         }
         let range = first.span.start..step.span.end.max(last.span.end);
@@ -407,13 +458,21 @@ impl Machine {
         }
     }
 
-    fn push(&mut self, value: Value, span: &Range<usize>) {
+    /// The last value, if it is a list.
+    pub(super) fn list_on_top(&mut self) -> Option<&mut ListValue> {
+        match self.stack.last_mut().map(|operand| &mut operand.value) {
+            Some(Value::List(list)) => Some(list),
+            _ => None,
+        }
+    }
+
+    pub(super) fn push(&mut self, value: Value, span: &Range<usize>) {
         let span = span.clone();
         self.stack.push(Operand { value, span });
     }
 
     /// The last operand. The parser leaves one for every step that takes one.
-    fn pop(&mut self, span: &Range<usize>) -> Operand {
+    pub(super) fn pop(&mut self, span: &Range<usize>) -> Operand {
         self.stack.pop().unwrap_or_else(|| Operand {
             value: Value::Solid(SolidId::EMPTY),
             span: span.clone(),
@@ -421,7 +480,7 @@ impl Machine {
     }
 
     /// The last operands, in order.
-    fn pop_many(&mut self, count: usize) -> Vec<Operand> {
+    pub(super) fn pop_many(&mut self, count: usize) -> Vec<Operand> {
         self.stack.split_off(self.stack.len().saturating_sub(count))
     }
 }

@@ -1,4 +1,4 @@
-//! `.padl`: named numbers and solids, one per line.
+//! `.padl`: named numbers, solids and figures, one per line.
 //!
 //! Brackets of all kinds are frames on an explicit stack, so their depth is not limited by the
 //! program's stack. An expression is read into steps of a stack machine. Outside of loops and parts
@@ -8,9 +8,11 @@ mod brackets;
 mod budget;
 mod code;
 mod expression;
+mod figures;
 mod functions;
 mod include;
 mod keywords;
+mod lists;
 mod loops;
 mod machine;
 mod parser;

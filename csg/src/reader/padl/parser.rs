@@ -5,10 +5,13 @@ use std::ops::Range;
 use super::super::error::SpannedError;
 use super::super::lexer::{Cursor, Dialect, Lexeme, Token};
 use super::super::number::literal;
-use super::brackets::{Bracket, FunctionBracket, MotionsBracket, PrimitiveBracket, RangeStage};
+use super::brackets::{
+    ArgumentList, Bracket, ConstructionBracket, FunctionBracket, HullBracket, MotionsBracket,
+    PrimitiveBracket, RangeStage,
+};
 use super::code::{Instruction, Step};
 use super::expression::{Expression, Operator};
-use super::keywords::{Function, Keyword, MOTIONS, Predefined, STEP, Shape};
+use super::keywords::{Construction, Function, Keyword, MOTIONS, Predefined, STEP, Shape};
 use super::scope::Meaning;
 use super::session::Session;
 
@@ -98,7 +101,7 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
         });
     }
 
-    fn bracket(&self) -> Option<&Bracket> {
+    pub(super) fn bracket(&self) -> Option<&Bracket> {
         self.frames.last().map(|frame| &frame.bracket)
     }
 
@@ -112,8 +115,26 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
         }
     }
 
+    /// The expression goes on with another operand.
+    pub(super) fn incomplete(&mut self) {
+        if let Some(expression) = self.expression() {
+            expression.complete = false;
+        }
+    }
+
+    /// Leaves the innermost bracket.
+    pub(super) fn close_frame(&mut self) -> Option<Bracket> {
+        let frame = self.frames.pop()?;
+        self.depth -= 1;
+        Some(frame.bracket)
+    }
+
     /// Emits a whole operand.
-    fn emit_operand(&mut self, step: Step, span: Range<usize>) -> Result<(), SpannedError> {
+    pub(super) fn emit_operand(
+        &mut self,
+        step: Step,
+        span: Range<usize>,
+    ) -> Result<(), SpannedError> {
         self.complete();
         self.emit(step, span)
     }
@@ -121,6 +142,9 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
     /// Reads a value or the start of one.
     fn operand(&mut self) -> Result<(), SpannedError> {
         let lexeme = self.cursor.next();
+        if self.is_in_list() {
+            return self.list_item(lexeme);
+        }
         match lexeme.token {
             Token::Number => {
                 let number = literal(self.cursor.text(lexeme), lexeme.span())?;
@@ -164,6 +188,11 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
             (Some(Meaning::Part(part)), _) => self.begin_part(part, lexeme),
             (None, Some(Predefined::Pi)) => self.emit_operand(Step::Pi, lexeme.span()),
             (None, Some(Predefined::Function(function))) => self.begin_function(function, lexeme),
+            (None, Some(Predefined::Construction(construction))) => {
+                self.begin_construction(construction, lexeme)
+            }
+            (None, Some(Predefined::Outline(outline))) => self.begin_list(outline, lexeme),
+            (None, Some(Predefined::Hull)) => self.begin_hull(lexeme),
             (None, Some(Predefined::For)) => self.begin_loop(lexeme),
             (None, None) => Err(self.session.scope.unknown(text, lexeme.span())),
         }
@@ -186,6 +215,32 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
         let open = self.cursor.expect('(', &what_for)?;
         self.open(Bracket::Function(FunctionBracket {
             function,
+            name,
+            open,
+            count: 0,
+        }));
+        self.first_argument()
+    }
+
+    fn begin_construction(
+        &mut self,
+        construction: Construction,
+        name: Lexeme,
+    ) -> Result<(), SpannedError> {
+        let what_for = format!("and the arguments of `{}`", construction.word());
+        let open = self.cursor.expect('(', &what_for)?;
+        self.open(Bracket::Construction(ConstructionBracket {
+            construction,
+            name,
+            open,
+            arguments: ArgumentList::default(),
+        }));
+        self.first_argument()
+    }
+
+    fn begin_hull(&mut self, name: Lexeme) -> Result<(), SpannedError> {
+        let open = self.cursor.expect('(', "and the operands of `HULL`")?;
+        self.open(Bracket::Hull(HullBracket {
             name,
             open,
             count: 0,
@@ -259,9 +314,7 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
     }
 
     fn begin_motions(&mut self, at: Lexeme) -> Result<(), SpannedError> {
-        if let Some(expression) = self.expression() {
-            expression.complete = false;
-        }
+        self.incomplete();
         let open = self.cursor.expect('(', "and the motions of `AT`")?;
         self.open(Bracket::Motions(MotionsBracket {
             at,
@@ -285,8 +338,8 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
     fn argument(&mut self) -> Result<(), SpannedError> {
         self.cursor.skip_newlines();
         match self.bracket() {
-            Some(Bracket::Function(_)) => return Ok(()),
-            Some(Bracket::Part(_)) => return self.part_argument(),
+            Some(Bracket::Function(_) | Bracket::Hull(_)) => return Ok(()),
+            Some(Bracket::Part(_) | Bracket::Construction(_)) => return self.part_argument(),
             _ => {}
         }
         let lexeme = self.cursor.next();
@@ -330,9 +383,17 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
                 Bracket::Primitive(_)
                 | Bracket::Motions(_)
                 | Bracket::Function(_)
-                | Bracket::Part(_),
+                | Bracket::Part(_)
+                | Bracket::Construction(_)
+                | Bracket::Hull(_),
                 Token::Symbol(')' | ','),
             ) => return self.end_argument(lexeme).map(|()| false),
+            (Bracket::Tuple(_), Token::Symbol(')' | ',' | ';')) => {
+                return self.end_tuple_number(lexeme).map(|()| false);
+            }
+            (Bracket::List(_), Token::Symbol(')' | ',' | ';')) => {
+                return self.end_list_item(lexeme).map(|()| false);
+            }
             (Bracket::Statement, _) => "an operator or the end of the line",
             (Bracket::Override, _) => "an operator or the end of the value",
             (Bracket::Range(head), _) => head.stage.expected(),
@@ -349,39 +410,41 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
 
     fn end_group(&mut self, span: Range<usize>) -> Result<(), SpannedError> {
         self.reduce(0)?;
-        self.frames.pop();
-        self.depth -= 1;
+        self.close_frame();
         self.emit_operand(Step::Group, span)
     }
 
     fn end_argument(&mut self, lexeme: Lexeme) -> Result<(), SpannedError> {
         self.reduce(0)?;
-        if let Some(Bracket::Function(bracket)) = self.frames.last_mut().map(|f| &mut f.bracket) {
-            bracket.count += 1;
-            if lexeme.is(',') && !bracket.function.takes_many() {
-                let expected = format!("one argument of `{}`", bracket.function.word());
-                return Err(SpannedError::input(lexeme.span(), "`,`", expected));
+        match self.frames.last_mut().map(|frame| &mut frame.bracket) {
+            Some(Bracket::Function(bracket)) => {
+                bracket.count += 1;
+                if lexeme.is(',') && !bracket.function.takes_many() {
+                    let expected = format!("one argument of `{}`", bracket.function.word());
+                    return Err(SpannedError::input(lexeme.span(), "`,`", expected));
+                }
             }
+            Some(Bracket::Hull(bracket)) => bracket.count += 1,
+            _ => {}
         }
         if !lexeme.is(',') {
             return self.end_bracket(lexeme);
         }
-        if let Some(expression) = self.expression() {
-            expression.complete = false;
-        }
+        self.incomplete();
         self.argument()
     }
 
     fn end_bracket(&mut self, close: Lexeme) -> Result<(), SpannedError> {
-        let Some(frame) = self.frames.pop() else {
+        let Some(bracket) = self.close_frame() else {
             return Ok(());
         };
-        self.depth -= 1;
-        let (start, step) = match frame.bracket {
+        let (start, step) = match bracket {
             Bracket::Primitive(bracket) => (bracket.keyword, bracket.end(close)?),
             Bracket::Motions(bracket) => (bracket.at, bracket.end(close)?),
             Bracket::Function(bracket) => (bracket.name, bracket.end(close)?),
             Bracket::Part(bracket) => (bracket.name, bracket.end(close)?),
+            Bracket::Construction(bracket) => (bracket.name, bracket.end(close)?),
+            Bracket::Hull(bracket) => (bracket.name, bracket.end(close)?),
             _ => return Ok(()),
         };
         self.emit_operand(step, start.span().start..close.span().end)

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::super::error::SpannedError;
 use super::super::lexer::{Lexeme, Token};
-use super::brackets::{Bracket, PartBracket};
+use super::brackets::{ArgumentList, Bracket, PartBracket};
 use super::code::{Instruction, Parameter, ParametricPart, PartBody, Step};
 use super::parser::Parser;
 use super::scope::{Definition, Meaning};
@@ -105,24 +105,25 @@ impl Parser<'_, '_, '_> {
             part,
             name,
             open,
-            given: Vec::new(),
-            named: false,
+            arguments: ArgumentList::default(),
         }));
         self.first_argument()
     }
 
-    /// Begins an argument of a part, with or without its name.
+    /// Begins an argument of a part or a figure, with or without its name.
     pub(super) fn part_argument(&mut self) -> Result<(), SpannedError> {
         let lexeme = self.cursor.peek();
         let text = self.cursor.text(lexeme);
         let is_named = lexeme.token == Token::Name && self.cursor.peek_at(1).is('=');
-        let Some(Bracket::Part(bracket)) = self.frames.last_mut().map(|f| &mut f.bracket) else {
-            return Ok(());
-        };
-        if !is_named {
-            return bracket.begin_next(lexeme);
+        match self.frames.last_mut().map(|frame| &mut frame.bracket) {
+            Some(Bracket::Part(bracket)) if is_named => bracket.begin_named(text, lexeme)?,
+            Some(Bracket::Part(bracket)) => return bracket.begin_next(lexeme),
+            Some(Bracket::Construction(bracket)) if is_named => {
+                bracket.begin_named(text, lexeme)?;
+            }
+            Some(Bracket::Construction(bracket)) => return bracket.begin_next(lexeme),
+            _ => return Ok(()),
         }
-        bracket.begin_named(text, lexeme)?;
         self.cursor.next();
         self.cursor.next();
         Ok(())

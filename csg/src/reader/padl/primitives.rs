@@ -72,6 +72,18 @@ fn argument_index(shape: Shape, dimension: Dimension) -> usize {
     }
 }
 
+/// The motions of a figure: along x and y, and about z.
+pub(super) const PLANE_MOTIONS: [usize; 3] = [0, 1, 5];
+
+/// The error of a motion of a figure that leaves the plane.
+pub(super) fn not_in_plane(motion: usize, span: Range<usize>) -> SpannedError {
+    let name = MOTIONS.get(motion).copied().unwrap_or_default();
+    let found = format!("`{name}` for a figure");
+    let known = PLANE_MOTIONS.map(|index| MOTIONS[index]).join("`, `");
+    let expected = format!("a motion in the plane, one of `{known}`");
+    SpannedError::input(span, found, expected)
+}
+
 /// Appends a motion, given by its index among [`MOTIONS`]; returns the length of the exact numbers
 /// of all motions in bits.
 pub(super) fn push_motion(

@@ -1,5 +1,5 @@
-//! What the author is told about values that are rounded, and about ranges without numbers: once
-//! each.
+//! What the author is told about values that are rounded, ranges without numbers, and faces that are
+//! not plane: once each.
 
 use std::ops::Range;
 
@@ -22,6 +22,7 @@ struct FirstPlace {
 pub(super) struct Remarks {
     rounded: Option<FirstPlace>,
     empty: Option<FirstPlace>,
+    triangulated: Option<FirstPlace>,
 }
 
 impl Remarks {
@@ -38,7 +39,15 @@ impl Remarks {
     pub(super) fn add_empty(&mut self, first: &Rational, last: &Rational, span: &Range<usize>) {
         add(&mut self.empty, span, || {
             let [first, last] = [first, last].map(|n| show(n).replacen("the value ", "", 1));
-            format!("the range {first}..{last} contains no number: `FOR` adds no solid")
+            format!("the range {first}..{last} contains no number: `FOR` adds nothing")
+        });
+    }
+
+    /// Faces of a polyhedron are not plane.
+    pub(super) fn add_triangulated(&mut self, count: usize, span: &Range<usize>) {
+        add(&mut self.triangulated, span, || match count {
+            1 => "a face that is not plane is cut into triangles".to_owned(),
+            _ => format!("{count} faces that are not plane are cut into triangles"),
         });
     }
 
@@ -65,6 +74,7 @@ impl Remarks {
         self.rounded
             .into_iter()
             .chain(self.empty)
+            .chain(self.triangulated)
             .map(note)
             .collect()
     }

@@ -15,7 +15,7 @@ const MAX_LOCALS: usize = 100;
 /// The meaning of a name that a file sets.
 #[derive(Debug, Clone)]
 pub(super) enum Meaning {
-    /// A number or a solid, by its index among the values.
+    /// A number, a solid or a figure, by its index among the values.
     Value(usize),
     Part(Rc<ParametricPart>),
 }
@@ -49,6 +49,11 @@ pub(super) struct Scope {
 impl Scope {
     pub(super) fn global(&self, name: &str) -> Option<&Definition> {
         self.globals.get(name)
+    }
+
+    /// Whether the file sets a name.
+    pub(super) fn is_known(&self, name: &str) -> bool {
+        self.slot(name).is_some() || self.globals.contains_key(name)
     }
 
     pub(super) fn define(&mut self, name: &str, definition: Definition) {

@@ -1,23 +1,13 @@
 //! OpenSCAD's plane figures.
 
-use std::ops::Range;
-
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
+use super::super::region::bad_figure;
 use super::arguments::{Argument, Arguments, Value};
 use super::facets::FacetRule;
 use super::measures::{half, length, radius};
 use crate::figure::{Figure, FigureError, FigurePoint, PlaneMap};
-
-/// The error of a figure that is not exact.
-pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedError {
-    SpannedError::input(
-        span.clone(),
-        error.to_string(),
-        "a figure of segments and arcs",
-    )
-}
 
 /// The figure of a node in its own frame; `None` for one without area.
 pub(super) fn figure(

@@ -7,10 +7,10 @@ use premio_kernel::number::rational::{Rational, exact_sqrt, from_decimal, to_f64
 
 use super::super::error::SpannedError;
 use super::super::notes::Notes;
+use super::super::refusal::construction_error;
+use super::super::region::Region;
 use super::super::rigid_fit::{NotRigid, Placement, placement};
 use super::arguments::{Argument, Arguments};
-use super::refusal::construction_error;
-use super::region::Region;
 use crate::builder::{Builder, SolidId};
 use crate::construction::{AffineMap, mapped};
 use crate::figure::PlaneMap;

@@ -8,15 +8,13 @@
 //! | `measures` | lengths and radii |
 //! | `figures` | plane figures |
 //! | `import` | the contents of other files |
-//! | `region` | set operations on these |
 //! | `resize` | new sizes as factors |
 //! | `shapes` | solids |
 //! | `slices` | how many slices an extrusion has |
 //! | `text` | the figures of texts |
 //! | `twist` | extrusions that are made of slices |
-//! | `sweep` | extrusions and revolutions |
+//! | `sweep` | the arguments of extrusions and revolutions |
 //! | `matrix` | motions and scales |
-//! | `refusal` | the errors of what has no exact result |
 //! | `nodes` | the meaning of every node |
 
 mod arguments;
@@ -26,8 +24,6 @@ mod import;
 mod matrix;
 mod measures;
 mod nodes;
-mod refusal;
-mod region;
 mod resize;
 mod shapes;
 mod slices;
@@ -45,6 +41,9 @@ use super::{PartPlace, Program, ReadOptions, StandaloneText};
 /// The relative rounding of the six digits that OpenSCAD writes.
 const SIX_DIGITS: f64 = 1e-6;
 
+/// What is advised where circles have no exact result.
+const POLYGONS: &str = "with `--facets all` circles are read as OpenSCAD's polygons";
+
 pub(super) fn read(
     name: &str,
     source: &str,
@@ -53,7 +52,11 @@ pub(super) fn read(
     let mut cursor = Cursor::new(source, Dialect::Scad)?;
     let file = syntax::parse(&mut cursor)?;
     let mut evaluator = Evaluator::new(&cursor, name, options);
-    let part = evaluator.solid(file)?;
+    let is_literal = evaluator.rule.is_literal();
+    let part = evaluator.solid(file).map_err(|error| match is_literal {
+        true => error,
+        false => error.help_with_circles(POLYGONS),
+    })?;
     let Evaluator {
         builder,
         mut notes,

@@ -6,9 +6,10 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::notes::Notes;
+use super::super::region::bad_figure;
 use super::arguments::{Argument, Arguments};
 use super::facets::FacetRule;
-use super::figures::{bad_figure, index};
+use super::figures::index;
 use super::measures::{MovedPrimitive, Shape, checked, half, length, radius};
 use crate::figure::{Figure, direction};
 use crate::polyhedron::{Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint};

@@ -4,10 +4,9 @@ use premio_kernel::number::rational::{Rational, to_f64};
 
 use super::super::error::SpannedError;
 use super::super::notes::Notes;
+use super::super::region::{Region, bad_figure};
 use super::arguments::{Argument, Arguments};
 use super::facets::fragments;
-use super::figures::bad_figure;
-use super::region::Region;
 use crate::figure::{Figure, FigureError, FigureOperation};
 use crate::lettering::{
     FontFile, FontName, Fonts, HorizontalAlignment, TextStyle, VerticalAlignment, contours,

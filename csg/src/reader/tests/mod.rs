@@ -6,6 +6,7 @@ mod csg;
 mod json;
 mod messages;
 mod padl;
+mod padl_figures;
 mod padl_words;
 mod pov;
 mod robustness;

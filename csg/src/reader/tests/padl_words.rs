@@ -123,7 +123,7 @@ fn a_rounded_value_is_remarked_on_once() {
     assert_snapshot!(notes("P = SPH(R=sqrt(2))").concat(), @"this value of `sqrt` is irrational: it is read as the nearest f64, 1.4142135623730951");
     assert_snapshot!(notes("P = SPH(R=sqrt(2)) UN SPH(R=pi)").concat(), @"this value of `sqrt` is irrational: it is read as the nearest f64, 1.4142135623730951 (and once more)");
     assert_snapshot!(notes("P = FOR i=1..100: SPH(R=sin(i))").concat(), @"this value of `sin` is irrational: it is read as the nearest f64, 0.01745240643728351 (and 97 times more)");
-    assert_snapshot!(notes("P = SPH(R=1) DIF FOR i=7..0: SPH(R=2)").concat(), @"the range 7..0 contains no number: `FOR` adds no solid");
+    assert_snapshot!(notes("P = SPH(R=1) DIF FOR i=7..0: SPH(R=2)").concat(), @"the range 7..0 contains no number: `FOR` adds nothing");
 }
 
 #[test]

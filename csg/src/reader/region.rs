@@ -5,12 +5,29 @@
 
 use std::ops::Range;
 
-use super::super::error::SpannedError;
-use super::figures::bad_figure;
+use super::error::SpannedError;
 use crate::figure::{Figure, FigureError, FigureExpression, FigureOperation, PlaneMap};
 use crate::transform::Transform;
 
-/// A figure that a node makes.
+/// The error of a figure that is not exact.
+pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedError {
+    SpannedError::input(
+        span.clone(),
+        error.to_string(),
+        "a figure of segments and arcs",
+    )
+    .about_circles(concerns_circles(error))
+}
+
+/// Whether an error is about circles and arcs that polygons could replace.
+pub(super) fn concerns_circles(error: &FigureError) -> bool {
+    matches!(
+        error,
+        FigureError::Elliptic | FigureError::ArcAcrossAxis | FigureError::NoHull
+    )
+}
+
+/// A figure of a description.
 #[derive(Debug, Clone)]
 pub(super) struct RegionFigure {
     /// The figure in its own frame.
@@ -19,7 +36,7 @@ pub(super) struct RegionFigure {
     pub map: PlaneMap,
     /// The same map as a motion, if it is one.
     pub moves: Option<Transform>,
-    /// The place of its node.
+    /// Its place in the text.
     pub span: Range<usize>,
 }
 
@@ -32,6 +49,8 @@ pub(super) enum Region {
         operands: Vec<Region>,
         /// The number of operations inside each other.
         depth: usize,
+        /// The number of edges of all figures.
+        edges: usize,
     },
 }
 
@@ -89,10 +108,12 @@ impl Region {
                 op,
                 operands,
                 depth,
+                edges,
             } => Self::Combined {
                 op,
                 operands: operands.into_iter().map(|r| r.mapped(map, moves)).collect(),
                 depth,
+                edges,
             },
         }
     }
@@ -115,19 +136,62 @@ impl Region {
             return Ok(operands.pop());
         }
         let depth = 1 + operands.iter().map(Self::depth).max().unwrap_or(0);
+        let edges = operands.iter().map(Self::edge_count).sum();
         let region = Self::Combined {
             op,
             operands,
             depth,
+            edges,
         };
-        match depth > MAX_DEPTH {
-            true => {
-                let span = region.span();
-                Ok(region
-                    .evaluated(&span)?
-                    .map(|figure| Self::new(figure, span)))
-            }
-            false => Ok(Some(region)),
+        region.within_depth()
+    }
+
+    /// The region, evaluated in the plane if it has too many operations inside each other.
+    fn within_depth(self) -> Result<Option<Self>, SpannedError> {
+        if self.depth() <= MAX_DEPTH {
+            return Ok(Some(self));
+        }
+        let span = self.span();
+        let figure = self.evaluated(&span)?;
+        Ok(figure.map(|figure| Self::new(figure, span)))
+    }
+
+    /// An operation on two regions, which joins the operands of the first one if it is the same
+    /// operation: `(A - B) - C` is `A - B - C`.
+    pub fn joined(
+        op: FigureOperation,
+        first: Option<Self>,
+        second: Option<Self>,
+    ) -> Result<Option<Self>, SpannedError> {
+        let (mut operands, depth, edges) = match first {
+            Some(Self::Combined {
+                op: own,
+                operands,
+                depth,
+                edges,
+            }) if own == op => (operands, depth, edges),
+            first => return Self::combined(op, vec![first, second]),
+        };
+        if op == FigureOperation::Intersection && second.is_none() {
+            return Ok(None);
+        }
+        let depth = depth.max(second.as_ref().map_or(0, |second| 1 + second.depth()));
+        let edges = edges + second.as_ref().map_or(0, Self::edge_count);
+        operands.extend(second);
+        let region = Self::Combined {
+            op,
+            operands,
+            depth,
+            edges,
+        };
+        region.within_depth()
+    }
+
+    /// The number of edges of all figures.
+    pub fn edge_count(&self) -> usize {
+        match self {
+            Self::Figure(figure) => figure.base.edges().len(),
+            Self::Combined { edges, .. } => *edges,
         }
     }
 

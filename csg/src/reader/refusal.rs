@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::super::error::SpannedError;
+use super::error::SpannedError;
+use super::region::concerns_circles;
 use crate::construction::ConstructionError;
 
 /// The error of a construction without an exact result.
@@ -24,5 +25,12 @@ pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>)
         ConstructionError::NoProjection(_) => "a result of segments and arcs",
         _ => "a valid shape",
     };
-    SpannedError::input(span.clone(), error.to_string(), expected)
+    let is_about_circles = match error {
+        ConstructionError::NoHull
+        | ConstructionError::Elliptic
+        | ConstructionError::NoProjection(_) => true,
+        ConstructionError::Figure(error) => concerns_circles(error),
+        _ => false,
+    };
+    SpannedError::input(span.clone(), error.to_string(), expected).about_circles(is_about_circles)
 }

@@ -2,9 +2,9 @@
 //! projected curves.
 
 use super::StrokeShape;
+use super::projected_arc::ProjectedArc;
 use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
-use std::rc::Rc;
 
 /// An ellipse: centre + cos s major + sin s minor, the minor half axis to the left of the major
 /// one.
@@ -112,15 +112,6 @@ impl ImageEllipse {
     }
 }
 
-/// A point of a projected curve, with the curve's parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// The parameter.
-    pub t: f64,
-    /// The image point.
-    pub point: Point2<f64>,
-}
-
 /// An arc in the image, with a parameter over a range.
 #[derive(Clone)]
 pub enum ImageArc<'c> {
@@ -134,12 +125,7 @@ pub enum ImageArc<'c> {
         range: [f64; 2],
     },
     /// The projection of an arc in space, by its parameter.
-    Projected {
-        /// The image of a parameter.
-        curve: Rc<dyn Fn(f64) -> Point2<f64> + 'c>,
-        /// Points along it, whose polyline is within the drawing's distance.
-        samples: Vec<Sample>,
-    },
+    Projected(ProjectedArc<'c>),
 }
 
 /// The point of an arc that is nearest to another.
@@ -157,7 +143,7 @@ impl ImageArc<'_> {
         match self {
             Self::Segment(_) => [0.0, 1.0],
             Self::Elliptic { range, .. } => *range,
-            Self::Projected { samples, .. } => [samples[0].t, samples[samples.len() - 1].t],
+            Self::Projected(arc) => arc.range(),
         }
     }
 
@@ -166,7 +152,7 @@ impl ImageArc<'_> {
         match self {
             Self::Segment([a, b]) => a + (b - a) * t,
             Self::Elliptic { ellipse, .. } => ellipse.point(t),
-            Self::Projected { curve, .. } => curve(t),
+            Self::Projected(arc) => arc.point(t),
         }
     }
 
@@ -185,10 +171,7 @@ impl ImageArc<'_> {
                 let around = 3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt();
                 0.5 * around * (range[1] - range[0])
             }
-            Self::Projected { samples, .. } => {
-                let steps = samples.windows(2).map(|s| (s[1].point - s[0].point).norm());
-                steps.sum()
-            }
+            Self::Projected(arc) => arc.length(),
         }
     }
 
@@ -197,7 +180,7 @@ impl ImageArc<'_> {
         let [lo, hi] = self.range();
         let start = self.point(lo);
         let places = match self {
-            Self::Projected { samples, .. } => samples.iter().map(|s| s.point).collect(),
+            Self::Projected(arc) => arc.samples().iter().map(|s| s.point).collect(),
             _ => vec![self.point(0.5 * (lo + hi)), self.point(hi)],
         };
         let away = places.iter().map(|p| (p - start).norm());
@@ -207,21 +190,10 @@ impl ImageArc<'_> {
     /// A bound of the distance between a projected curve and its polyline, from the angles between
     /// samples.
     pub fn deviation(&self) -> f64 {
-        let Self::Projected { samples, .. } = self else {
-            return 0.0;
-        };
-        // The arc over a chord is no farther from it than its ends are from each other.
-        let steps = samples.windows(3).map(|s| {
-            let [a, b] = [s[1].point - s[0].point, s[2].point - s[1].point];
-            let turn = a.perp(&b).abs() / (a.norm() * b.norm());
-            let step = a.norm().max(b.norm());
-            if turn.is_finite() { turn * step } else { step }
-        });
-        let few = match samples.len() {
-            2 => (samples[1].point - samples[0].point).norm(),
-            _ => 0.0,
-        };
-        steps.fold(few, f64::max)
+        match self {
+            Self::Projected(arc) => arc.deviation(),
+            Self::Segment(_) | Self::Elliptic { .. } => 0.0,
+        }
     }
 
     /// The lower left and the upper right corner of a box that contains the arc's polyline or
@@ -234,7 +206,8 @@ impl ImageArc<'_> {
                 let reach = Vector2::new(m.x.hypot(n.x), m.y.hypot(n.y));
                 [ellipse.centre - reach, ellipse.centre + reach]
             }
-            Self::Projected { samples, .. } => {
+            Self::Projected(arc) => {
+                let samples = arc.samples();
                 let first = samples[0].point;
                 let all = samples.iter().map(|s| s.point);
                 all.fold([first, first], |[lo, hi], p| [lo.inf(&p), hi.sup(&p)])
@@ -268,8 +241,18 @@ impl ImageArc<'_> {
                     false => end,
                 }
             }
-            Self::Projected { samples, .. } => self.nearest_projected(samples, p),
+            Self::Projected(arc) => arc.nearest(p),
         }
+    }
+
+    /// The point that is nearest to another, if it is within a distance.
+    pub fn nearest_within(&self, p: &Point2<f64>, distance: f64) -> Option<Nearest> {
+        // A search on the curve takes far longer than one on its polyline.
+        let is_projected = matches!(self, Self::Projected(_));
+        if is_projected && self.approximate_distance(p) > distance + self.deviation() {
+            return None;
+        }
+        Some(self.nearest(p)).filter(|near| near.distance <= distance)
     }
 
     fn at(&self, t: f64, p: &Point2<f64>) -> Nearest {
@@ -279,51 +262,13 @@ impl ImageArc<'_> {
         }
     }
 
-    /// Searches the nearest side of the polyline and the adjacent ones.
-    fn nearest_projected(&self, samples: &[Sample], p: &Point2<f64>) -> Nearest {
-        let sides = samples.len() - 1;
-        let away = |i: &usize| side_distance(p, &samples[*i], &samples[i + 1]);
-        let near = (0..sides).min_by(|i, j| away(i).total_cmp(&away(j)));
-        let near = near.unwrap_or(0);
-        let around = near.saturating_sub(1)..(near + 2).min(sides);
-        let found = around.map(|i| self.nearest_between(samples[i].t, samples[i + 1].t, p));
-        let nearest = found.min_by(|a, b| a.distance.total_cmp(&b.distance));
-        nearest.unwrap_or_else(|| self.at(samples[0].t, p))
-    }
-
-    /// The nearest point between two parameters, by golden sections.
-    fn nearest_between(&self, mut lo: f64, mut hi: f64, p: &Point2<f64>) -> Nearest {
-        let golden = 0.5 * (5.0f64.sqrt() - 1.0);
-        let inner = |lo: f64, hi: f64| [hi - golden * (hi - lo), lo + golden * (hi - lo)];
-        let ends = [lo, hi].map(|t| self.at(t, p));
-        let mut tried = inner(lo, hi).map(|t| self.at(t, p));
-        for _ in 0..GOLDEN_STEPS {
-            match tried[0].distance < tried[1].distance {
-                true => {
-                    hi = tried[1].t;
-                    tried = [self.at(inner(lo, hi)[0], p), tried[0]];
-                }
-                false => {
-                    lo = tried[0].t;
-                    tried = [tried[1], self.at(inner(lo, hi)[1], p)];
-                }
-            }
-        }
-        let all = [ends[0], tried[0], tried[1], ends[1]];
-        let nearest = all
-            .into_iter()
-            .min_by(|a, b| a.distance.total_cmp(&b.distance));
-        nearest.unwrap_or(ends[0])
-    }
-
     /// The distance of a point from the arc's polyline, or from the arc where it is a segment or
     /// elliptic.
     pub fn approximate_distance(&self, p: &Point2<f64>) -> f64 {
-        let Self::Projected { samples, .. } = self else {
-            return self.nearest(p).distance;
-        };
-        let steps = samples.windows(2).map(|s| side_distance(p, &s[0], &s[1]));
-        steps.fold(f64::INFINITY, f64::min)
+        match self {
+            Self::Projected(arc) => arc.approximate_distance(p),
+            Self::Segment(_) | Self::Elliptic { .. } => self.nearest(p).distance,
+        }
     }
 
     /// The arc over a part of its range.
@@ -335,17 +280,7 @@ impl ImageArc<'_> {
                 ellipse: *ellipse,
                 range: [lo, hi],
             },
-            Self::Projected { curve, samples } => {
-                let end = |t: f64| Sample { t, point: curve(t) };
-                let inner = samples.iter().filter(|s| lo < s.t && s.t < hi);
-                let mut part = vec![end(lo)];
-                part.extend(inner);
-                part.push(end(hi));
-                Self::Projected {
-                    curve: curve.clone(),
-                    samples: part,
-                }
-            }
+            Self::Projected(arc) => Self::Projected(arc.part([lo, hi])),
         }
     }
 
@@ -360,32 +295,20 @@ impl ImageArc<'_> {
                 from: range[0],
                 sweep: (range[1] - range[0]).min(TAU),
             },
-            Self::Projected { samples, .. } => {
+            Self::Projected(arc) => {
+                let samples = arc.samples();
                 StrokeShape::Path(samples.iter().map(|s| s.point).collect())
             }
         }
     }
 }
 
-/// The distance of a point from the side of a polyline between two samples.
-fn side_distance(p: &Point2<f64>, a: &Sample, b: &Sample) -> f64 {
-    let d = b.point - a.point;
-    let square = d.norm_squared();
-    let t = match square > 0.0 {
-        true => (p - a.point).dot(&d) / square,
-        false => 0.0,
-    };
-    (a.point + d * t.clamp(0.0, 1.0) - p).norm()
-}
-
-/// The number of golden-section steps: each narrows the bracket by 0.618, and after this many it is
-/// as narrow as f64 can resolve a minimum.
-const GOLDEN_STEPS: u32 = 44;
-
 #[cfg(test)]
 mod tests {
+    use super::super::projected_arc::Sample;
     use super::*;
     use nalgebra::Vector3;
+    use std::rc::Rc;
 
     fn ellipse() -> ImageEllipse {
         ImageEllipse {
@@ -450,10 +373,8 @@ mod tests {
             let point = ellipse.point(t);
             Sample { t, point }
         });
-        let projected = ImageArc::Projected {
-            curve: Rc::new(move |t| ellipse.point(t)),
-            samples: samples.collect(),
-        };
+        let curve = Rc::new(move |t| ellipse.point(t));
+        let projected = ImageArc::Projected(ProjectedArc::new(curve, samples.collect()));
         for arc in [elliptic, projected] {
             for t in [5.0, 5.3, 6.9, 7.77, 8.0] {
                 let found = arc.nearest(&ellipse.point(t));

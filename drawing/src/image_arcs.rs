@@ -2,7 +2,8 @@
 //! back.
 
 use super::Layer;
-use super::image_arc::{ImageArc, ImageEllipse, Sample};
+use super::image_arc::{ImageArc, ImageEllipse};
+use super::projected_arc::{ProjectedArc, Sample};
 use super::supports::ordered;
 use nalgebra::{Matrix3, Point2, Vector3};
 use premio_kernel::geometry::curve::Curve;
@@ -180,10 +181,7 @@ impl<'c> ArcMaker<'c> {
         }
         let (projection, curve) = (self.projection, &contour.space_curve);
         let image = move |t: f64| projection.project_y_up(&curve.point(t));
-        ImageArc::Projected {
-            curve: Rc::new(image),
-            samples,
-        }
+        ImageArc::Projected(ProjectedArc::new(Rc::new(image), samples))
     }
 
     /// Adds the samples after the first of two, so that the polyline is within the distance.

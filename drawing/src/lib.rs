@@ -9,6 +9,7 @@ mod image_arc;
 mod image_arcs;
 mod intervals;
 mod once;
+mod projected_arc;
 pub mod sheet;
 mod supports;
 pub mod svg;

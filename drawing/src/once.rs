@@ -48,7 +48,7 @@ pub fn strokes(arcs: Vec<DrawnArc<'_>>, tolerance: f64) -> Vec<Stroke> {
         },
         arc: drawn.arc,
     });
-    let is_projected = |a: &RankedArc<'_>| matches!(a.arc, ImageArc::Projected { .. });
+    let is_projected = |a: &RankedArc<'_>| matches!(a.arc, ImageArc::Projected(_));
     let (mut projected, supported): (Vec<_>, Vec<_>) = ranked.partition(is_projected);
     projected.retain(|a| a.arc.reach() > tolerance);
     let mut all = on_supports(supported, tolerance);
@@ -110,7 +110,7 @@ impl<'c> Canvas<'c> {
 
     /// Draws an arc where no earlier one runs.
     fn draw(&mut self, RankedArc { rank, arc }: RankedArc<'c>) {
-        let is_projected = matches!(arc, ImageArc::Projected { .. });
+        let is_projected = matches!(arc, ImageArc::Projected(_));
         let before = self.projected.near(&arc, self.tolerance);
         let others = self.supported.near(&arc, self.tolerance);
         let others = others.filter(|other| may_share(&arc, other));
@@ -138,7 +138,7 @@ impl<'c> Canvas<'c> {
 /// closer over a part.
 fn may_share(arc: &ImageArc<'_>, other: &ImageArc<'_>) -> bool {
     match arc {
-        ImageArc::Projected { .. } => true,
+        ImageArc::Projected(_) => true,
         ImageArc::Elliptic { .. } => matches!(other, ImageArc::Elliptic { .. }),
         ImageArc::Segment(_) => false,
     }
@@ -148,12 +148,8 @@ fn may_share(arc: &ImageArc<'_>, other: &ImageArc<'_>) -> bool {
 fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Vec<[f64; 2]> {
     let [lo, hi] = arc.range();
     let ends = others.iter().flat_map(|other| other.ends());
-    let on_arc = ends.map(|p| arc.nearest(&p));
-    let mut stops: Vec<f64> = on_arc
-        .filter(|at| at.distance <= tolerance)
-        .map(|at| at.t)
-        .chain([lo, hi])
-        .collect();
+    let on_arc = ends.filter_map(|p| arc.nearest_within(&p, tolerance));
+    let mut stops: Vec<f64> = on_arc.map(|at| at.t).chain([lo, hi]).collect();
     stops.sort_by(f64::total_cmp);
     let mut covered: Vec<[f64; 2]> = Vec::new();
     for pair in stops.windows(2).filter(|pair| pair[0] < pair[1]) {
@@ -201,7 +197,7 @@ fn united(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 /// Whether a covered range of an arc on a support is no longer than where curves cross or touch: the
 /// arc stays whole there.
 fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
-    let is_supported = !matches!(arc, ImageArc::Projected { .. });
+    let is_supported = !matches!(arc, ImageArc::Projected(_));
     is_supported && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
 }
 
@@ -233,7 +229,8 @@ struct Search<'a, 'c> {
 
 impl Search<'_, '_> {
     fn is_on(&self, t: f64, other: &ImageArc<'_>) -> bool {
-        other.nearest(&self.arc.point(t)).distance <= self.tolerance
+        let found = other.nearest_within(&self.arc.point(t), self.tolerance);
+        found.is_some()
     }
 
     /// Whether the whole span runs along another arc: analytic curves that coincide over a range
@@ -310,7 +307,8 @@ impl Search<'_, '_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::image_arc::{ImageEllipse, Sample};
+    use super::super::image_arc::ImageEllipse;
+    use super::super::projected_arc::{ProjectedArc, Sample};
     use super::*;
     use nalgebra::{Point2, Vector2};
     use std::f64::consts::{PI, TAU};
@@ -338,10 +336,10 @@ mod tests {
             let t = lo + (hi - lo) * f64::from(k) / 32.0;
             Sample { t, point: curve(t) }
         };
-        ImageArc::Projected {
-            curve: Rc::new(curve),
-            samples: (0..=32).map(sample).collect(),
-        }
+        ImageArc::Projected(ProjectedArc::new(
+            Rc::new(curve),
+            (0..=32).map(sample).collect(),
+        ))
     }
 
     fn lengths(strokes: &[Stroke]) -> [f64; 2] {
@@ -376,10 +374,10 @@ mod tests {
             let t = f64::from(k) / 64.0;
             Sample { t, point: curve(t) }
         };
-        let hidden = ImageArc::Projected {
-            curve: Rc::new(curve),
-            samples: (0..=64).map(sample).collect(),
-        };
+        let hidden = ImageArc::Projected(ProjectedArc::new(
+            Rc::new(curve),
+            (0..=64).map(sample).collect(),
+        ));
         let arcs = vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)];
         let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
         assert_eq!(visible, 1.0);
@@ -460,10 +458,10 @@ mod tests {
                 let t = f64::from(k) / 32.0;
                 Sample { t, point: curve(t) }
             };
-            ImageArc::Projected {
-                curve: Rc::new(curve),
-                samples: (0..=32).map(sample).collect(),
-            }
+            ImageArc::Projected(ProjectedArc::new(
+                Rc::new(curve),
+                (0..=32).map(sample).collect(),
+            ))
         };
         for (exponent, start) in [(2, 0.0), (4, 0.001f64.sqrt())] {
             let arcs = vec![

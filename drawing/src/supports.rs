@@ -124,7 +124,7 @@ impl Support {
                 direction: (b - a).normalize(),
             }),
             ImageArc::Elliptic { ellipse, .. } => Some(Self::Ellipse(*ellipse)),
-            ImageArc::Projected { .. } => None,
+            ImageArc::Projected(_) => None,
         }
     }
 

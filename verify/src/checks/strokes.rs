@@ -4,35 +4,71 @@ use nalgebra::{Point2, Vector2};
 use premio_drawing::{Layer, Stroke, StrokeShape};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Strokes with their bounding boxes.
+/// Strokes, indexed by the boxes of their pieces.
 pub(super) struct Strokes<'a> {
     list: &'a [Stroke],
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, Piece>>,
+}
+
+/// The most sides of a path in one piece.
+const SIDES: usize = 8;
+
+/// A stroke, or consecutive sides of a path.
+#[derive(Clone, Copy, PartialEq)]
+struct Piece {
+    stroke: usize,
+    /// The first side of a path.
+    start: usize,
 }
 
 impl<'a> Strokes<'a> {
     /// The strokes of a drawing.
     pub fn new(list: &'a [Stroke]) -> Self {
-        let leaf = |(i, stroke): (usize, &Stroke)| {
-            let [lo, hi] = bounds(&stroke.shape);
-            GeomWithData::new(Rectangle::from_corners(lo.into(), hi.into()), i)
+        let pieces = |(stroke, of): (usize, &Stroke)| {
+            let count = match &of.shape {
+                StrokeShape::Path(points) => points.len().saturating_sub(1).max(1),
+                StrokeShape::Line(_) | StrokeShape::Ellipse { .. } => 1,
+            };
+            let starts = (0..count).step_by(SIDES);
+            let pieces = starts.map(|start| Piece { stroke, start });
+            pieces.collect::<Vec<_>>()
         };
-        let leaves = list.iter().enumerate().map(leaf).collect();
+        let leaf = |piece: Piece| {
+            let [lo, hi] = match &list[piece.stroke].shape {
+                StrokeShape::Path(points) => bounds(&StrokeShape::Path(piece.of(points).into())),
+                shape => bounds(shape),
+            };
+            GeomWithData::new(Rectangle::from_corners(lo.into(), hi.into()), piece)
+        };
+        let pieces = list.iter().enumerate().flat_map(pieces);
+        let leaves = pieces.map(leaf).collect();
         Self {
             list,
             tree: RTree::bulk_load(leaves),
         }
     }
 
-    /// The strokes within `near` of a point of the image.
+    /// The strokes within `near` of a point of the image, in order.
     pub fn passing(&self, p: &Point2<f64>, near: f64) -> impl Iterator<Item = (usize, &'a Stroke)> {
         let around = AABB::from_corners([p.x - near, p.y - near], [p.x + near, p.y + near]);
         let found = self.tree.locate_in_envelope_intersecting(around);
-        let strokes = found.map(|leaf| (leaf.data, &self.list[leaf.data]));
-        let p = *p;
-        strokes.filter(move |(_, s)| distance(&s.shape, &p) <= near)
+        let is_near = |piece: &Piece| match &self.list[piece.stroke].shape {
+            StrokeShape::Path(points) => from_path(p, piece.of(points)) <= near,
+            shape => distance(shape, p) <= near,
+        };
+        let found = found.map(|leaf| leaf.data).filter(is_near);
+        let strokes: BTreeSet<usize> = found.map(|piece| piece.stroke).collect();
+        strokes.into_iter().map(|i| (i, &self.list[i]))
+    }
+}
+
+impl Piece {
+    /// Its points of a path.
+    fn of(self, points: &[Point2<f64>]) -> &[Point2<f64>] {
+        &points[self.start..(self.start + SIDES + 1).min(points.len())]
     }
 }
 
@@ -109,14 +145,16 @@ fn from_segment(p: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
     (a + d * t.clamp(0.0, 1.0) - p).norm()
 }
 
+fn from_path(p: &Point2<f64>, points: &[Point2<f64>]) -> f64 {
+    let steps = points.windows(2).map(|s| from_segment(p, &s[0], &s[1]));
+    steps.fold(f64::INFINITY, f64::min)
+}
+
 /// The distance of a point from a shape; for an ellipse to first order.
 pub(super) fn distance(shape: &StrokeShape, p: &Point2<f64>) -> f64 {
     match shape {
         StrokeShape::Line([a, b]) => from_segment(p, a, b),
-        StrokeShape::Path(points) => {
-            let steps = points.windows(2).map(|s| from_segment(p, &s[0], &s[1]));
-            steps.fold(f64::INFINITY, f64::min)
-        }
+        StrokeShape::Path(points) => from_path(p, points),
         StrokeShape::Ellipse {
             centre,
             major,

@@ -11,6 +11,7 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
+use std::collections::HashSet;
 
 /// A point at which a curve is split.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub(super) struct IntersectionCurve<N: Float = f64> {
     pub carriers: Vec<usize>,
     /// The pairs of carriers that are tangent along all of it.
     pub tangent: Vec<[usize; 2]>,
+    /// The pairs of carriers of which it is the intersection.
+    pub crossing: Vec<[usize; 2]>,
     /// Its bounding box.
     pub bounds: Aabb,
     /// The boxes in which the faces of both carriers lie, or one around them all.
@@ -83,6 +86,8 @@ pub(super) struct Arrangement<N: Float = f64> {
     pub carriers: Vec<Surface<N>>,
     /// For each half space of each solid: its carrier.
     pub sides: Vec<Vec<CarrierSide>>,
+    /// The pairs of planes at a small angle whose line is known by corners on both.
+    pub known_lines: HashSet<[usize; 2]>,
     /// The curves.
     pub meetings: Vec<IntersectionCurve<N>>,
     /// The corners.

@@ -20,6 +20,7 @@ use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, intersect}
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::geometry::trace::BranchPosition;
+use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -53,16 +54,19 @@ pub(super) fn arrange<'t, N: Float>(
     let mut found = Arrangement {
         carriers,
         sides,
+        known_lines: HashSet::new(),
         meetings: Vec::new(),
         corners: Vec::new(),
         calls: Vec::new(),
         tree,
     };
     let mut corners = VertexMerger::new(predicates.resolution());
-    let joints = WallJoints::new(solids, &found.sides);
+    let joints = WallJoints::new(solids, &found.sides, &mut corners, predicates);
     for (pair, supports) in found.pairs(solids, reach, most)? {
-        let intersected = found.intersected(pair, &sources, extent, &joints, predicates)?;
-        found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
+        let intersected =
+            found.intersected(pair, &sources, extent, &joints, &corners, predicates)?;
+        let kept = found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
+        found.cut_at_corners(kept, joints.corners(pair), &corners, predicates);
         bounded(found.meetings.len(), most)?;
     }
     found.settle_contacts(predicates);
@@ -183,7 +187,7 @@ impl<N: Float> Arrangement<N> {
             for l in o.sides_near(&box_a.grown(reach)) {
                 let b = &o.sides[l];
                 let (c, d) = (self.sides[i][k].carrier, self.sides[j][l].carrier);
-                if c == d || (i == j && k >= l) {
+                if c == d || (i == j && (k >= l || s.touch_at_corners(k, l))) {
                     continue;
                 }
                 let Some(bounds) = common(&box_a, &b.bounds.grown(reach)) else {
@@ -210,13 +214,21 @@ impl<N: Float> Arrangement<N> {
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
         joints: &WallJoints<N>,
+        corners: &VertexMerger<N>,
         predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, EvaluationError> {
+        let surfaces = pair.map(|c| &self.carriers[c]);
+        if let Some(line) = joints.line(pair, surfaces, corners, extent, predicates) {
+            self.known_lines.insert(pair);
+            return Ok(SurfaceIntersection {
+                branches: vec![line],
+                ..SurfaceIntersection::default()
+            });
+        }
         let exact = pair.map(|c| move || sources[c].exact());
         let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
         let own = predicates.another();
         let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
-        let surfaces = pair.map(|c| &self.carriers[c]);
         for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
             if let Some(moved) = joints.contact_at_joint(pair, branch, surfaces, predicates) {
                 *branch = moved;
@@ -234,7 +246,8 @@ impl<N: Float> Arrangement<N> {
         Ok(found)
     }
 
-    /// Adds the intersection of two carriers where their faces may intersect.
+    /// Adds the intersection of two carriers where their faces may intersect, and returns the
+    /// indices of its curves.
     fn add_pair(
         &mut self,
         [a, b]: [usize; 2],
@@ -242,7 +255,7 @@ impl<N: Float> Arrangement<N> {
         found: &SurfaceIntersection<N>,
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
-    ) {
+    ) -> Vec<usize> {
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &found.branches {
             kept.push(self.add_branch(a, b, branch, supports, predicates));
@@ -260,6 +273,28 @@ impl<N: Float> Arrangement<N> {
                         let t = t.clamp(lo, hi);
                         self.meetings[m].cuts.push(Cut { t, vertex });
                     }
+                }
+            }
+        }
+        kept.into_iter().flatten().collect()
+    }
+
+    /// Cuts curves at the corners of polyhedra on them.
+    fn cut_at_corners(
+        &mut self,
+        meetings: Vec<usize>,
+        vertices: &[usize],
+        corners: &VertexMerger<N>,
+        predicates: &Predicates,
+    ) {
+        for index in meetings {
+            let m = &mut self.meetings[index];
+            for &vertex in vertices {
+                let p = corners.all[vertex].point;
+                let t = m.curve.parameter(&p);
+                let is_on = predicates.within((m.curve.point(t) - p).length());
+                if is_on && t.lies_in(m.range) {
+                    m.cuts.push(Cut { t, vertex });
                 }
             }
         }
@@ -298,6 +333,7 @@ impl<N: Float> Arrangement<N> {
                 closed: branch.closed && range == branch.range,
                 carriers: vec![a, b],
                 tangent: branch.tangent.then_some([a, b]).into_iter().collect(),
+                crossing: vec![[a, b]],
                 bounds: b3,
                 regions,
                 parts,

@@ -24,6 +24,8 @@ pub(super) struct EdgeCandidate<N: Float = f64> {
     pub carriers: Vec<usize>,
     /// The pairs of carriers that are tangent along all of it.
     pub tangent: Vec<[usize; 2]>,
+    /// The pairs of carriers of which it is the intersection.
+    pub crossing: Vec<[usize; 2]>,
 }
 
 /// A key shared by copies of a piece.
@@ -68,6 +70,7 @@ pub(super) fn pieces<N: Float>(
                 ends,
                 carriers: arrangement.holding(m, range, ends, predicates),
                 tangent: m.tangent.clone(),
+                crossing: m.crossing.clone(),
             };
             if piece.carriers.len() > 2 {
                 let home = homes[index];
@@ -211,6 +214,7 @@ impl<N: Float> EdgeCandidate<N> {
     /// Adds the carriers and tangencies of a copy.
     fn add(&mut self, copy: &EdgeCandidate<N>) {
         self.tangent.extend(&copy.tangent);
+        self.crossing.extend(&copy.crossing);
         self.carriers.extend(&copy.carriers);
         self.carriers.sort_unstable();
         self.carriers.dedup();

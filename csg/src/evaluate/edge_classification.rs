@@ -42,10 +42,10 @@ struct Near<N: Float = f64> {
 }
 
 impl<N: Float> Near<N> {
-    /// Whether a carrier of the piece bounds it.
-    fn has_face(&self, carrier: usize) -> bool {
-        self.open.iter().any(|o| o.carrier == carrier)
-            || self.walls.iter().any(|w| w.carrier == carrier)
+    /// Whether a carrier of the piece may bound it in a direction away from the piece.
+    fn may_have_face(&self, carrier: usize, direction: &Vector3<N>) -> bool {
+        let mut walls = self.walls.iter().filter(|w| w.carrier == carrier);
+        self.open.iter().any(|o| o.carrier == carrier) || walls.any(|w| w.extends(direction))
     }
 
     /// Whether its half spaces contain a sector, by the sides of the carriers.
@@ -96,8 +96,13 @@ impl<N: Float> OpenWall<N> {
 
     /// Whether a half sheet is part of the wall.
     fn has(&self, sheet: &HalfSheet<N>) -> bool {
-        let extends = |away: &Vector3<N>| away.dot(&sheet.direction).is_above_zero();
-        self.carrier == sheet.carrier && self.away.as_ref().is_none_or(extends)
+        self.carrier == sheet.carrier && self.extends(&sheet.direction)
+    }
+
+    /// Whether it extends from the piece in a direction along its carrier.
+    fn extends(&self, direction: &Vector3<N>) -> bool {
+        let mut away = self.away.iter();
+        away.all(|away| away.dot(direction).is_above_zero())
     }
 }
 
@@ -325,7 +330,7 @@ impl<N: Float> Classifier<'_, N> {
         near: &[Near<N>],
     ) -> Result<Vec<FaceUse>, EvaluationError> {
         let piece = spot.piece;
-        let sheets = spot.sheets(|at| near.iter().any(|n| n.has_face(at)))?;
+        let sheets = spot.sheets(|at, way| near.iter().any(|n| n.may_have_face(at, way)))?;
         let n = sheets.len();
         // The sides before the first sheet: opposite to those beyond the first sheet of each
         // carrier.

@@ -8,6 +8,8 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A facet in the polyhedron's frame.
 #[derive(Clone, Debug)]
@@ -27,9 +29,25 @@ pub(super) struct Facets<N: Float> {
     origin: Point3<N>,
     points: Vec<Point3<N>>,
     all: Vec<Facet<N>>,
+    /// For each facet those that touch it at common corners and edges only.
+    neighbours: Arc<[Vec<usize>]>,
     index: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>,
     /// The greatest height.
     top: f64,
+}
+
+/// An edge between two facets.
+pub(super) struct FacetEdge {
+    /// The indices of its ends among the points.
+    pub ends: [usize; 2],
+    /// The facets on both sides.
+    pub facets: [usize; 2],
+}
+
+/// An edge in the direction in which a facet uses it.
+struct FacetUse {
+    ends: [usize; 2],
+    facet: usize,
 }
 
 /// The relation of a point to the nearest edge of a facet.
@@ -62,6 +80,7 @@ impl<N: Float> Facets<N> {
             top: tops.fold(f64::NEG_INFINITY, f64::max),
             points,
             all,
+            neighbours: polyhedron.neighbours().into(),
             index,
         }
     }
@@ -81,6 +100,61 @@ impl<N: Float> Facets<N> {
                 std::array::from_fn(|i| hi[i].max(p[i])),
             ]
         })
+    }
+
+    /// Whether two facets touch each other at common corners and edges only.
+    pub fn are_neighbours(&self, a: usize, b: usize) -> bool {
+        self.neighbours[a].binary_search(&b).is_ok()
+    }
+
+    /// Whether two facets have a common edge.
+    pub fn have_common_edge(&self, a: usize, b: usize) -> bool {
+        let edges = &self.all[b].edges;
+        let mut own = self.all[a].edges.iter();
+        own.any(|[i, j]| edges.contains(&[*j, *i]) || edges.contains(&[*i, *j]))
+    }
+
+    /// The points in space.
+    pub fn vertices(&self) -> impl Iterator<Item = Point3<N>> {
+        let points = self.points.iter();
+        points.map(|p| self.origin + self.turn * p.coords)
+    }
+
+    /// The facets around each point.
+    pub fn facets_at_points(&self) -> Vec<Vec<usize>> {
+        let mut around = vec![Vec::new(); self.points.len()];
+        for (facet, Facet { edges, .. }) in self.all.iter().enumerate() {
+            for [i, _] in edges {
+                around[*i].push(facet);
+            }
+        }
+        around
+    }
+
+    /// The edges between two facets.
+    pub fn edges(&self) -> Vec<FacetEdge> {
+        let facets = self.all.iter().enumerate();
+        let directed = facets.flat_map(|(facet, Facet { edges, .. })| {
+            edges.iter().map(move |&ends| FacetUse { ends, facet })
+        });
+        let directed: Vec<FacetUse> = directed.collect();
+        let mut opposite: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+        for FacetUse {
+            ends: [i, j],
+            facet,
+        } in &directed
+        {
+            opposite.entry([*j, *i]).or_default().push(*facet);
+        }
+        let once = directed.into_iter().filter(|of| of.ends[0] < of.ends[1]);
+        let edges = once.flat_map(|FacetUse { ends, facet }| {
+            let others = opposite.get(&ends).into_iter().flatten();
+            others.map(move |&other| FacetEdge {
+                ends,
+                facets: [facet, other],
+            })
+        });
+        edges.collect()
     }
 
     fn local(&self, p: &Point3<N>) -> Point3<N> {

@@ -85,6 +85,24 @@ impl<N: Float> Solid<N> {
         near
     }
 
+    /// Whether two of its sides are facets that touch at a common corner and nowhere else.
+    pub fn touch_at_corners(&self, a: usize, b: usize) -> bool {
+        match &self.region {
+            Some(WalledRegion::Facets(facets)) => {
+                facets.are_neighbours(a, b) && !facets.have_common_edge(a, b)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether two of its sides are facets that touch at common corners and edges only.
+    pub fn are_neighbours(&self, a: usize, b: usize) -> bool {
+        match &self.region {
+            Some(WalledRegion::Facets(facets)) => facets.are_neighbours(a, b),
+            _ => false,
+        }
+    }
+
     /// The half spaces that are not walls, with their indices among the sides.
     pub fn half_spaces(&self) -> impl Iterator<Item = (usize, &HalfSpace<N>)> + Clone {
         let walls = self.region.as_ref().map_or(0, WalledRegion::walls);

@@ -63,11 +63,12 @@ pub(super) struct Spot<'a, N: Float = f64> {
 }
 
 impl<N: Float> Spot<'_, N> {
-    /// The half sheets around the piece, counterclockwise about its tangent. Only carriers (by
-    /// index in the piece) on which a primitive present there has a face are included.
+    /// The half sheets around the piece, counterclockwise about its tangent. Only those are included
+    /// on which a primitive present there may have a face, by the index of the carrier in the piece
+    /// and the direction away from it: where others lie within the resolution is of no effect.
     pub(super) fn sheets(
         &self,
-        has_face: impl Fn(usize) -> bool,
+        may_have_face: impl Fn(usize, &Vector3<N>) -> bool,
     ) -> Result<Vec<HalfSheet<N>>, EvaluationError> {
         let Self {
             piece,
@@ -82,12 +83,13 @@ impl<N: Float> Spot<'_, N> {
         // them.
         let mut axes: Vec<Axis<N>> = Vec::new();
         for (at, &c) in piece.carriers.iter().enumerate() {
-            if !has_face(at) {
-                continue;
-            }
             let surface = self.surface(c);
             let normal = surface.normal(p);
             let mut direction = normal.cross(tangent).unit();
+            let ways = [direction, -direction].map(|way| may_have_face(at, &way));
+            if ways == [false, false] {
+                continue;
+            }
             let rise = |direction: &Vector3<N>| {
                 let up = normal.dot(&tangent.cross(direction));
                 -surface.normal_curvature(p, direction) * up.signum()
@@ -100,7 +102,10 @@ impl<N: Float> Spot<'_, N> {
                     rise: rise(&direction),
                 }),
             }
-            for d in [direction, -direction] {
+            for (d, may_have_face) in [direction, -direction].into_iter().zip(ways) {
+                if !may_have_face {
+                    continue;
+                }
                 let l = tangent.cross(&d);
                 let up = normal.dot(&l);
                 sheets.push(HalfSheet {
@@ -155,6 +160,9 @@ impl<N: Float> Spot<'_, N> {
             let is_one = a.angle.is_exactly(b.angle);
             let both = [a, b].map(|s| self.piece.carriers[s.carrier]);
             if a.carrier == b.carrier || !is_shallow {
+                Some(false)
+            } else if !is_one && self.are_crossing_planes(both) {
+                // They are in the order of their angles, also where rounding hides it nearby.
                 Some(false)
             } else if is_one && self.is_tangent_along(both) && !self.predicates.within(gap) {
                 Some(gap.is_above_zero())
@@ -222,6 +230,13 @@ impl<N: Float> Spot<'_, N> {
         self.predicates
             .within(sine * self.piece.reach(self.arrangement))
             || self.predicates.within(sine * sine / (N::TWO * bend))
+    }
+
+    /// Whether two carriers are planes whose line is the piece's.
+    fn are_crossing_planes(&self, [a, b]: [usize; 2]) -> bool {
+        let is_plane = |c: usize| matches!(self.surface(c), Surface::Plane(_));
+        let mut crossing = self.piece.crossing.iter();
+        is_plane(a) && is_plane(b) && crossing.any(|pair| *pair == [a.min(b), a.max(b)])
     }
 
     /// Whether two carriers are tangent along the entire piece, by their intersection curve.

@@ -5,6 +5,7 @@ use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pas
 use super::close_calls::{Between, Unlisted};
 use super::error::EvaluationError;
 use super::halfspaces::HalfSpaceModel;
+use super::region::WalledRegion;
 use super::vertices::{CornerIndex, VertexMerger};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
@@ -86,12 +87,41 @@ impl<N: Float> Arrangement<N> {
                         && !m.carriers.contains(&carrier)
                         && m.is_near(side.hull.as_ref(), predicates)
                     {
-                        near.push(CarrierFace { carrier, bounds });
+                        let is_neighbour = self.is_neighbour(m, s.data, k, solids, predicates);
+                        near.push(CarrierFace {
+                            carrier,
+                            bounds,
+                            is_neighbour,
+                        });
                     }
                 }
             }
         }
         near
+    }
+
+    /// Whether a face is a facet that touches those facets of its solid near it that lie on the
+    /// curve's carriers at common corners and edges only. Then it cuts the curve only where an edge
+    /// or a corner of these does, and there the curve is cut.
+    fn is_neighbour(
+        &self,
+        m: &IntersectionCurve<N>,
+        solid: usize,
+        side: usize,
+        solids: &HalfSpaceModel<N>,
+        predicates: &Predicates,
+    ) -> bool {
+        let (sides, solid) = (&self.sides[solid], &solids.all[solid]);
+        if !matches!(solid.region, Some(WalledRegion::Facets(_))) {
+            return false;
+        }
+        let around = solid.sides[side].bounds.grown(predicates.reach::<N>());
+        let on_curve = solid.sides_near(&around).into_iter();
+        let on_curve = on_curve.filter(|&other| m.carriers.contains(&sides[other].carrier));
+        let mut are_neighbours = on_curve
+            .map(|other| solid.are_neighbours(side, other))
+            .peekable();
+        are_neighbours.peek().is_some() && are_neighbours.all(|is_neighbour| is_neighbour)
     }
 
     /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.
@@ -106,6 +136,18 @@ impl<N: Float> Arrangement<N> {
     ) -> Result<Option<Vec<Cut<N>>>, EvaluationError> {
         let carrier = faces[0].carrier;
         let m = &self.meetings[index];
+        // Where the line of the carrier and one of the curve's is known, it gives the common points,
+        // which the curve at a small angle does not.
+        let known_line = |a: &usize| {
+            let pair = [carrier.min(*a), carrier.max(*a)];
+            self.known_lines.contains(&pair)
+        };
+        let is_known = m.carriers.iter().any(known_line);
+        if is_known || faces.iter().all(|face| face.is_neighbour) {
+            let resolution = predicates.resolution();
+            let contains = lies_on(&m.curve, m.range, &self.carriers[carrier], resolution);
+            return Ok((!contains).then(Vec::new));
+        }
         let mut cuts = self.special_points(index, carrier, known, predicates, corners);
         let special = cuts.iter().map(|cut| SpecialPoint {
             t: cut.t,
@@ -291,6 +333,8 @@ struct CarrierFace {
     carrier: usize,
     /// Its box, enlarged.
     bounds: Aabb,
+    /// Whether edges and corners known otherwise cut the curve in its place.
+    is_neighbour: bool,
 }
 
 /// A known point of a curve on a carrier.

@@ -2,6 +2,7 @@
 
 mod convex_hull;
 mod coplanar;
+mod neighbours;
 mod orientation;
 mod shells;
 

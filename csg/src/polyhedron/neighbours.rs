@@ -1,0 +1,161 @@
+//! Which faces touch each other at their common corners only.
+
+use super::orientation::{FilteredPoint, cross, difference, dot, orientation};
+use super::{Polyhedron, PolyhedronFace, SpacePoint};
+use premio_kernel::number::rational::Rational;
+use std::cmp::Ordering;
+
+/// The most faces around a corner that are compared with each other.
+const MAX_FACES_AROUND: usize = 256;
+
+impl Polyhedron {
+    /// For each face the others that share corners with it and are known to touch it only there, or
+    /// along a common edge; in increasing order.
+    pub(crate) fn neighbours(&self) -> Vec<Vec<usize>> {
+        let points: Vec<FilteredPoint> = self.points.iter().map(FilteredPoint::new).collect();
+        let mut around = vec![Vec::new(); points.len()];
+        for (index, face) in self.faces.iter().enumerate() {
+            for corner in face.corners() {
+                around[corner].push(index);
+            }
+        }
+        let mut neighbours = vec![Vec::new(); self.faces.len()];
+        for faces in around
+            .iter()
+            .filter(|faces| faces.len() <= MAX_FACES_AROUND)
+        {
+            for (k, &a) in faces.iter().enumerate() {
+                neighbours[a].extend(faces[k + 1..].iter().copied().filter(|&b| b != a));
+            }
+        }
+        let faces = self.faces.iter();
+        let planes: Vec<Option<[usize; 3]>> = faces.map(|face| plane_of(face, &points)).collect();
+        for (a, of_a) in neighbours.iter_mut().enumerate() {
+            of_a.sort_unstable();
+            of_a.dedup();
+            of_a.retain(|&b| {
+                let pair = FacePair {
+                    points: &points,
+                    faces: [a, b].map(|face| &self.faces[face]),
+                    planes: [planes[a], planes[b]],
+                };
+                pair.touch_at_corners()
+            });
+        }
+        for a in 0..neighbours.len() {
+            for b in neighbours[a].clone() {
+                if b > a {
+                    neighbours[b].push(a);
+                }
+            }
+        }
+        for of in &mut neighbours {
+            of.sort_unstable();
+            of.dedup();
+        }
+        neighbours
+    }
+}
+
+/// Three corners of a face that are not in line; of a triangle, in its order.
+fn plane_of(face: &PolyhedronFace, points: &[FilteredPoint]) -> Option<[usize; 3]> {
+    let [first, second, others @ ..] = &face.loops.first()?[..] else {
+        return None;
+    };
+    let along = difference(&points[*second], &points[*first]);
+    let is_off = |third: &&usize| {
+        let normal = cross(&along, &difference(&points[**third], &points[*first]));
+        normal.iter().any(|x| !x.is_zero())
+    };
+    let third = others.iter().find(is_off)?;
+    Some([*first, *second, *third])
+}
+
+/// Two faces that share a corner.
+struct FacePair<'a> {
+    points: &'a [FilteredPoint],
+    faces: [&'a PolyhedronFace; 2],
+    /// Three corners of each that are not in line.
+    planes: [Option<[usize; 3]>; 2],
+}
+
+impl FacePair<'_> {
+    fn touch_at_corners(&self) -> bool {
+        let [a, b] = self.faces;
+        let is_of_b = |corner: &usize| b.corners().any(|other| other == *corner);
+        let mut shared: Vec<usize> = a.corners().filter(is_of_b).collect();
+        shared.sort_unstable();
+        shared.dedup();
+        let swapped = FacePair {
+            points: self.points,
+            faces: [b, a],
+            planes: [self.planes[1], self.planes[0]],
+        };
+        match shared[..] {
+            [corner] => {
+                self.is_on_one_side(&shared)
+                    || swapped.is_on_one_side(&shared)
+                    || self.passes_beside(corner)
+                    || swapped.passes_beside(corner)
+            }
+            [i, j] => {
+                let has_edge = |face: &PolyhedronFace| {
+                    face.edges().any(|edge| edge == [i, j] || edge == [j, i])
+                };
+                let is_apart = self.is_on_one_side(&shared) || swapped.is_on_one_side(&shared);
+                has_edge(a) && has_edge(b) && is_apart
+            }
+            _ => false,
+        }
+    }
+
+    /// The side of the second face's plane on which a corner lies.
+    fn side(&self, corner: usize) -> Option<Ordering> {
+        let [a, b, c] = self.planes[1]?.map(|i| &self.points[i]);
+        Some(orientation([a, b, c, &self.points[corner]]))
+    }
+
+    /// Whether all other corners of the first face are strictly on one side of the second one's
+    /// plane.
+    fn is_on_one_side(&self, shared: &[usize]) -> bool {
+        let others = self.faces[0].corners().filter(|i| !shared.contains(i));
+        let mut sides = others.map(|corner| self.side(corner));
+        let Some(Some(first)) = sides.next() else {
+            return false;
+        };
+        first != Ordering::Equal && sides.all(|side| side == Some(first))
+    }
+
+    /// Whether the first face, a triangle, cuts the plane of the second one along a segment from the
+    /// common corner that leaves it beside the second face, a triangle.
+    fn passes_beside(&self, corner: usize) -> bool {
+        let [Some(own), Some(other)] = self.planes else {
+            return false;
+        };
+        if self.faces.iter().any(|face| face.corners().count() != 3) {
+            return false;
+        }
+        let from = |of: [usize; 3]| {
+            let at = of.iter().position(|&i| i == corner)?;
+            Some([of[(at + 1) % 3], of[(at + 2) % 3]])
+        };
+        let (Some(ends), Some(wedge)) = (from(own), from(other)) else {
+            return false;
+        };
+        let apex = &self.points[corner];
+        let away = |i: usize| difference(&self.points[i], apex);
+        let (ends, [right, left]) = (ends.map(away), wedge.map(away));
+        let normal = cross(&right, &left);
+        let [h, k] = ends.each_ref().map(|end| dot(end, &normal));
+        // Where both ends are on one side, the face touches the plane at the corner only.
+        let (zero, span) = (Rational::ZERO, &h - &k);
+        if span.is_zero() || (h > zero) == (k > zero) || h.is_zero() || k.is_zero() {
+            return false;
+        }
+        let direction: SpacePoint =
+            std::array::from_fn(|i| (&ends[1][i] * &h - &ends[0][i] * &k) / &span);
+        let is_left_of_right = dot(&cross(&right, &direction), &normal);
+        let is_right_of_left = dot(&cross(&direction, &left), &normal);
+        is_left_of_right < zero || is_right_of_left < zero
+    }
+}

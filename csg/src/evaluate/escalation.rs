@@ -291,4 +291,46 @@ mod tests {
         // The shoelace formula.
         assert_relative_eq!(known.mass().volume, 0.175690155, max_relative = 1e-9);
     }
+
+    /// A pentagon that six digits moved from its plane, cut into a fan of three triangles at angles
+    /// of 4e-6, below an apex.
+    #[test]
+    fn a_fan_of_nearly_coplanar_facets_needs_f64_only() {
+        let known = evaluated(
+            "polyhedron(points = [[0, -2.75, 0.492188], [-0.0051056, -2.65746, 0.473752],
+                [-0.00943391, -2.57901, 0.421252], [-0.012326, -2.52659, 0.342681],
+                [-0.0133416, -2.50818, 0.25], [1, -2.75, 0.25]],
+                faces = [[4, 3, 2, 1, 0], [0, 1, 5], [1, 2, 5], [2, 3, 5], [3, 4, 5], [4, 0, 5]]);",
+        );
+        assert!(known.resolution > 1e-12, "f64 is enough");
+        // The sum of the determinants of the triangles, in rationals.
+        let volume = 0.005_180_311_332_705_253;
+        assert_relative_eq!(known.mass().volume, volume, max_relative = 1e-12);
+        let topology = &known.brep.topology;
+        assert_eq!((topology.faces.len(), topology.vertices), (8, 6));
+    }
+
+    /// Pyramids above and below a quadrilateral with one corner h above the plane of the others. One
+    /// is cut along a diagonal, the other along the other diagonal: between them lies a tetrahedron
+    /// of volume h/6, of which both consist. Their volumes are 1/3 and 1/3 + h/6.
+    #[test]
+    fn facets_of_two_polyhedra_at_one_edge_are_in_order() {
+        for h in [1e-2, 1e-4, 1e-6, 1e-8] {
+            let points = format!("[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, {h:.9}]");
+            let above = format!(
+                "polyhedron(points = [{points}, [0.5, 0.5, 1]], faces = [[0, 1, 2], [0, 2, 3],
+                    [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]]);"
+            );
+            let below = format!(
+                "polyhedron(points = [{points}, [0.5, 0.5, -1]], faces = [[3, 1, 0], [3, 2, 1],
+                    [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);"
+            );
+            let both = evaluated(&format!("union() {{ {above} {below} }}"));
+            assert!(both.resolution > 1e-12, "f64 is enough");
+            assert_relative_eq!(both.mass().volume, 2.0 / 3.0, max_relative = 1e-12);
+            let shared = evaluated(&format!("intersection() {{ {above} {below} }}"));
+            assert_relative_eq!(shared.mass().volume, h / 6.0, max_relative = 1e-6);
+            assert_eq!(shared.brep.topology.faces.len(), 4);
+        }
+    }
 }

@@ -19,39 +19,35 @@ impl Polyhedron {
                 around[corner].push(index);
             }
         }
-        let mut neighbours = vec![Vec::new(); self.faces.len()];
-        for faces in around
-            .iter()
-            .filter(|faces| faces.len() <= MAX_FACES_AROUND)
-        {
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for faces in around {
+            if faces.len() > MAX_FACES_AROUND {
+                continue;
+            }
             for (k, &a) in faces.iter().enumerate() {
-                neighbours[a].extend(faces[k + 1..].iter().copied().filter(|&b| b != a));
+                let others = faces[k + 1..].iter().filter(|&&b| b != a);
+                pairs.extend(others.map(|&b| [a.min(b), a.max(b)]));
             }
         }
+        pairs.sort_unstable();
+        pairs.dedup();
         let faces = self.faces.iter();
         let planes: Vec<Option<[usize; 3]>> = faces.map(|face| plane_of(face, &points)).collect();
-        for (a, of_a) in neighbours.iter_mut().enumerate() {
-            of_a.sort_unstable();
-            of_a.dedup();
-            of_a.retain(|&b| {
-                let pair = FacePair {
-                    points: &points,
-                    faces: [a, b].map(|face| &self.faces[face]),
-                    planes: [planes[a], planes[b]],
-                };
-                pair.touch_at_corners()
-            });
-        }
-        for a in 0..neighbours.len() {
-            for b in neighbours[a].clone() {
-                if b > a {
-                    neighbours[b].push(a);
-                }
+        let mut neighbours = vec![Vec::new(); self.faces.len()];
+        for pair in pairs {
+            let [a, b] = pair;
+            let of_pair = FacePair {
+                points: &points,
+                faces: pair.map(|face| &self.faces[face]),
+                planes: pair.map(|face| planes[face]),
+            };
+            if of_pair.touch_at_corners() {
+                neighbours[a].push(b);
+                neighbours[b].push(a);
             }
         }
         for of in &mut neighbours {
             of.sort_unstable();
-            of.dedup();
         }
         neighbours
     }
@@ -147,15 +143,16 @@ impl FacePair<'_> {
         let (ends, [right, left]) = (ends.map(away), wedge.map(away));
         let normal = cross(&right, &left);
         let [h, k] = ends.each_ref().map(|end| dot(end, &normal));
-        // Where both ends are on one side, the face touches the plane at the corner only.
-        let (zero, span) = (Rational::ZERO, &h - &k);
-        if span.is_zero() || (h > zero) == (k > zero) || h.is_zero() || k.is_zero() {
-            return false;
-        }
-        let direction: SpacePoint =
-            std::array::from_fn(|i| (&ends[1][i] * &h - &ends[0][i] * &k) / &span);
+        let [above, beyond] = [&h, &k].map(|height| height.cmp(&Rational::ZERO));
+        let direction: SpacePoint = match (above.is_eq(), beyond.is_eq()) {
+            (true, false) => ends[0].clone(),
+            (false, true) => ends[1].clone(),
+            // On one side the face touches the plane at the corner only.
+            _ if above == beyond => return false,
+            _ => std::array::from_fn(|i| (&ends[1][i] * &h - &ends[0][i] * &k) / (&h - &k)),
+        };
         let is_left_of_right = dot(&cross(&right, &direction), &normal);
         let is_right_of_left = dot(&cross(&direction, &left), &normal);
-        is_left_of_right < zero || is_right_of_left < zero
+        is_left_of_right < Rational::ZERO || is_right_of_left < Rational::ZERO
     }
 }

@@ -2,6 +2,7 @@
 use super::*;
 use proptest::prelude::*;
 
+mod neighbours;
 mod shells;
 
 fn points(all: &[[i32; 3]]) -> Vec<SpacePoint> {

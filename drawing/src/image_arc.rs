@@ -2,7 +2,7 @@
 //! projected curves.
 
 use super::StrokeShape;
-use super::projected_arc::ProjectedArc;
+use super::projected_arc::{Nearest, ProjectedArc};
 use nalgebra::{Matrix3, Point2, Vector2};
 use std::f64::consts::TAU;
 
@@ -126,15 +126,6 @@ pub enum ImageArc<'c> {
     },
     /// The projection of an arc in space, by its parameter.
     Projected(ProjectedArc<'c>),
-}
-
-/// The point of an arc that is nearest to another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
-    /// Its parameter.
-    pub t: f64,
-    /// Its distance.
-    pub distance: f64,
 }
 
 impl ImageArc<'_> {

@@ -1,6 +1,5 @@
 //! Arcs of projected curves: the points along them, and the nearest one to another point.
 
-use super::image_arc::Nearest;
 use nalgebra::{Point2, distance};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use std::rc::Rc;
@@ -12,6 +11,15 @@ pub struct Sample {
     pub t: f64,
     /// The image point.
     pub point: Point2<f64>,
+}
+
+/// The point of an arc that is nearest to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Its parameter.
+    pub t: f64,
+    /// Its distance.
+    pub distance: f64,
 }
 
 /// The image of a parameter.

@@ -146,7 +146,11 @@ impl<N: Float> Facets<N> {
         {
             opposite.entry([*j, *i]).or_default().push(*facet);
         }
-        let once = directed.into_iter().filter(|of| of.ends[0] < of.ends[1]);
+        let is_first = |of: &FacetUse| {
+            let [i, j] = of.ends;
+            i < j
+        };
+        let once = directed.into_iter().filter(is_first);
         let edges = once.flat_map(|FacetUse { ends, facet }| {
             let others = opposite.get(&ends).into_iter().flatten();
             others.map(move |&other| FacetEdge {

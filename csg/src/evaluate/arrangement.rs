@@ -11,7 +11,6 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
-use std::collections::HashSet;
 
 /// A point at which a curve is split.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,8 +85,6 @@ pub(super) struct Arrangement<N: Float = f64> {
     pub carriers: Vec<Surface<N>>,
     /// For each half space of each solid: its carrier.
     pub sides: Vec<Vec<CarrierSide>>,
-    /// The pairs of planes at a small angle whose line is known by corners on both.
-    pub known_lines: HashSet<[usize; 2]>,
     /// The curves.
     pub meetings: Vec<IntersectionCurve<N>>,
     /// The corners.

@@ -9,6 +9,7 @@ use super::close_calls::{Between, Unlisted};
 use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
 use super::face_hulls::FaceHull;
+use super::facet_joints::FacetJoints;
 use super::halfspaces::HalfSpaceModel;
 use super::split_curves::Later;
 use super::vertices::{CornerIndex, VertexMerger};
@@ -54,26 +55,35 @@ pub(super) fn arrange<'t, N: Float>(
     let mut found = Arrangement {
         carriers,
         sides,
-        known_lines: HashSet::new(),
         meetings: Vec::new(),
         corners: Vec::new(),
         calls: Vec::new(),
         tree,
     };
     let mut corners = VertexMerger::new(predicates.resolution());
-    let joints = WallJoints::new(solids, &found.sides, &mut corners, predicates);
+    let mut joints = Joints {
+        walls: WallJoints::new(solids, &found.sides),
+        facets: FacetJoints::new(solids, &found.sides, &mut corners, predicates),
+    };
     for (pair, supports) in found.pairs(solids, reach, most)? {
         let intersected =
-            found.intersected(pair, &sources, extent, &joints, &corners, predicates)?;
+            found.intersected(pair, &sources, extent, &mut joints, &corners, predicates)?;
         let kept = found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
-        found.cut_at_corners(kept, joints.corners(pair), &corners, predicates);
+        found.cut_at_corners(kept, joints.facets.corners(pair), &corners, predicates);
         bounded(found.meetings.len(), most)?;
     }
     found.settle_contacts(predicates);
     let mut later = Later::default();
     let mut entities = found.meetings.len();
     for i in 0..found.meetings.len() {
-        found.cut_meeting(i, solids, predicates, &mut corners, &mut later)?;
+        found.cut_meeting(
+            i,
+            solids,
+            &joints.facets,
+            predicates,
+            &mut corners,
+            &mut later,
+        )?;
         entities += found.meetings[i].cuts.len();
         bounded(entities, most)?;
     }
@@ -94,6 +104,12 @@ pub(super) fn arrange<'t, N: Float>(
         arrangement: found,
         sources,
     })
+}
+
+/// What is known of walls and facets before they are intersected.
+struct Joints<N: Float> {
+    walls: WallJoints<N>,
+    facets: FacetJoints,
 }
 
 /// The tree of the boxes of some solids, enlarged by `reach`.
@@ -213,13 +229,15 @@ impl<N: Float> Arrangement<N> {
         pair: [usize; 2],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
-        joints: &WallJoints<N>,
+        joints: &mut Joints<N>,
         corners: &VertexMerger<N>,
         predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, EvaluationError> {
         let surfaces = pair.map(|c| &self.carriers[c]);
-        if let Some(line) = joints.line(pair, surfaces, corners, extent, predicates) {
-            self.known_lines.insert(pair);
+        if let Some(line) = joints
+            .facets
+            .line(pair, surfaces, corners, extent, predicates)
+        {
             return Ok(SurfaceIntersection {
                 branches: vec![line],
                 ..SurfaceIntersection::default()
@@ -230,7 +248,10 @@ impl<N: Float> Arrangement<N> {
         let own = predicates.another();
         let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
         for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
-            if let Some(moved) = joints.contact_at_joint(pair, branch, surfaces, predicates) {
+            if let Some(moved) = joints
+                .walls
+                .contact_at_joint(pair, branch, surfaces, predicates)
+            {
                 *branch = moved;
             }
         }

@@ -204,6 +204,7 @@ mod tests {
     use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
     use crate::reader::{Format, ReadOptions, read};
     use approx::assert_relative_eq;
+    use proptest::prelude::*;
 
     /// A needle whose sides meet at angles below 0.01, turned by a matrix of six digits.
     const NEEDLE: &str = "linear_extrude(height = 1) {
@@ -331,6 +332,61 @@ mod tests {
             let shared = evaluated(&format!("intersection() {{ {above} {below} }}"));
             assert_relative_eq!(shared.mass().volume, h / 6.0, max_relative = 1e-6);
             assert_eq!(shared.brep.topology.faces.len(), 4);
+        }
+    }
+
+    /// A pyramid over or below a hexagon of which the corners are a few billionths above or below a
+    /// plane. OpenSCAD's faces run clockwise.
+    fn pyramid(heights: &[i32; 6], is_up: bool) -> String {
+        const RIM: [[f64; 2]; 6] = [
+            [4.0, 0.0],
+            [2.0, 3.464102],
+            [-2.0, 3.464102],
+            [-4.0, 0.0],
+            [-2.0, -3.464102],
+            [2.0, -3.464102],
+        ];
+        let corner = |([x, y], h): (&[f64; 2], &i32)| format!("[{x}, {y}, {h}e-9]");
+        let rim: Vec<String> = RIM.iter().zip(heights).map(corner).collect();
+        let (rim, apex) = (rim.join(", "), if is_up { 3 } else { -3 });
+        let side = |k: usize| match (k, (k + 1) % 6) {
+            (i, j) if is_up => format!("[6, {j}, {i}]"),
+            (i, j) => format!("[6, {i}, {j}]"),
+        };
+        let sides: Vec<String> = (0..6).map(side).collect();
+        let base = if is_up {
+            "[0, 1, 2, 3, 4, 5]"
+        } else {
+            "[5, 4, 3, 2, 1, 0]"
+        };
+        let sides = sides.join(", ");
+        format!("polyhedron(points = [{rim}, [0.3, 0.2, {apex}]], faces = [{base}, {sides}]);")
+    }
+
+    /// The bases of both pyramids are cut into fans about different corners. With these heights
+    /// diagonals of both cross in a point of each, and lie in the plane of a facet of each.
+    #[test]
+    fn diagonals_of_two_fans_cross() {
+        assert_sums(&[1, 0, 1, 0, 0, 0]);
+    }
+
+    /// Asserts that the volumes of the operations on two pyramids over one hexagon add up.
+    fn assert_sums(heights: &[i32; 6]) {
+        let [above, below] = [true, false].map(|is_up| pyramid(heights, is_up));
+        let volume = |text: &str| evaluated(text).mass().volume;
+        let both = |word: &str| volume(&format!("{word}() {{ {above} {below} }}"));
+        let [a, b] = [&above, &below].map(|text| volume(text));
+        let shared = both("intersection");
+        assert_relative_eq!(both("union") + shared, a + b, max_relative = 1e-14);
+        assert_relative_eq!(both("difference") + shared, a, max_relative = 1e-14);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn volumes_of_nearly_coplanar_fans_add_up(heights in prop::array::uniform6(-2..=2i32)) {
+            assert_sums(&heights);
         }
     }
 }

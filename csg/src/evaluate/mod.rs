@@ -53,6 +53,7 @@ mod evaluation;
 mod exact_coefficients;
 mod face_hulls;
 mod face_verification;
+mod facet_joints;
 mod facets;
 mod halfspaces;
 mod incidence_proof;

@@ -4,8 +4,8 @@
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pass};
 use super::close_calls::{Between, Unlisted};
 use super::error::EvaluationError;
+use super::facet_joints::{FacetJoints, NearFacet};
 use super::halfspaces::HalfSpaceModel;
-use super::region::WalledRegion;
 use super::vertices::{CornerIndex, VertexMerger};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
@@ -44,19 +44,31 @@ impl<N: Float> Arrangement<N> {
         &mut self,
         index: usize,
         solids: &HalfSpaceModel<N>,
+        joints: &FacetJoints,
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
         later: &mut Later<N>,
     ) -> Result<(), EvaluationError> {
-        let mut near = self.faces_near(index, solids, predicates);
+        let mut near = self.faces_near(index, solids, joints, predicates);
         near.sort_by_key(|face| face.carrier);
         let known: Vec<Cut<N>> = self.meetings[index].cuts.clone();
         let mut holding = Vec::new();
         let mut cuts = Vec::new();
         for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
-            match self.cuts_by(index, faces, &known, predicates, corners, later)? {
+            let (m, carrier) = (&self.meetings[index], faces[0].carrier);
+            let surface = &self.carriers[carrier];
+            let is_known = faces.iter().all(|face| face.cuts_at_edges)
+                || joints.knows_cuts(m, (carrier, surface), corners);
+            let found = match is_known {
+                true => {
+                    let resolution = predicates.resolution();
+                    (!lies_on(&m.curve, m.range, surface, resolution)).then(Vec::new)
+                }
+                false => self.cuts_by(index, faces, &known, predicates, corners, later)?,
+            };
+            match found {
                 Some(found) => cuts.extend(found),
-                None => holding.push(faces[0].carrier),
+                None => holding.push(carrier),
             }
         }
         let m = &mut self.meetings[index];
@@ -71,6 +83,7 @@ impl<N: Float> Arrangement<N> {
         &self,
         index: usize,
         solids: &HalfSpaceModel<N>,
+        joints: &FacetJoints,
         predicates: &Predicates,
     ) -> Vec<CarrierFace> {
         let m = &self.meetings[index];
@@ -87,41 +100,23 @@ impl<N: Float> Arrangement<N> {
                         && !m.carriers.contains(&carrier)
                         && m.is_near(side.hull.as_ref(), predicates)
                     {
-                        let is_neighbour = self.is_neighbour(m, s.data, k, solids, predicates);
+                        let facet = NearFacet {
+                            solid: s.data,
+                            of: solid,
+                            sides: &self.sides[s.data],
+                            side: k,
+                        };
+                        let cuts_at_edges = joints.cuts_at_edges(m, &facet, predicates);
                         near.push(CarrierFace {
                             carrier,
                             bounds,
-                            is_neighbour,
+                            cuts_at_edges,
                         });
                     }
                 }
             }
         }
         near
-    }
-
-    /// Whether a face is a facet that touches those facets of its solid near it that lie on the
-    /// curve's carriers at common corners and edges only. Then it cuts the curve only where an edge
-    /// or a corner of these does, and there the curve is cut.
-    fn is_neighbour(
-        &self,
-        m: &IntersectionCurve<N>,
-        solid: usize,
-        side: usize,
-        solids: &HalfSpaceModel<N>,
-        predicates: &Predicates,
-    ) -> bool {
-        let (sides, solid) = (&self.sides[solid], &solids.all[solid]);
-        if !matches!(solid.region, Some(WalledRegion::Facets(_))) {
-            return false;
-        }
-        let around = solid.sides[side].bounds.grown(predicates.reach::<N>());
-        let on_curve = solid.sides_near(&around).into_iter();
-        let on_curve = on_curve.filter(|&other| m.carriers.contains(&sides[other].carrier));
-        let mut are_neighbours = on_curve
-            .map(|other| solid.are_neighbours(side, other))
-            .peekable();
-        are_neighbours.peek().is_some() && are_neighbours.all(|is_neighbour| is_neighbour)
     }
 
     /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.
@@ -136,18 +131,6 @@ impl<N: Float> Arrangement<N> {
     ) -> Result<Option<Vec<Cut<N>>>, EvaluationError> {
         let carrier = faces[0].carrier;
         let m = &self.meetings[index];
-        // Where the line of the carrier and one of the curve's is known, it gives the common points,
-        // which the curve at a small angle does not.
-        let known_line = |a: &usize| {
-            let pair = [carrier.min(*a), carrier.max(*a)];
-            self.known_lines.contains(&pair)
-        };
-        let is_known = m.carriers.iter().any(known_line);
-        if is_known || faces.iter().all(|face| face.is_neighbour) {
-            let resolution = predicates.resolution();
-            let contains = lies_on(&m.curve, m.range, &self.carriers[carrier], resolution);
-            return Ok((!contains).then(Vec::new));
-        }
         let mut cuts = self.special_points(index, carrier, known, predicates, corners);
         let special = cuts.iter().map(|cut| SpecialPoint {
             t: cut.t,
@@ -333,8 +316,8 @@ struct CarrierFace {
     carrier: usize,
     /// Its box, enlarged.
     bounds: Aabb,
-    /// Whether edges and corners known otherwise cut the curve in its place.
-    is_neighbour: bool,
+    /// Whether edges and corners of its polyhedron cut the curve in its place.
+    cuts_at_edges: bool,
 }
 
 /// A known point of a curve on a carrier.

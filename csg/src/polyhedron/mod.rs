@@ -61,9 +61,7 @@ pub enum PolyhedronError {
         face: usize,
     },
     /// The faces do not close.
-    #[error(
-        "the faces are not closed: the edge from point {from} to point {to} has no face on its other side"
-    )]
+    #[error("the edge from point {from} to point {to} has no face on its other side")]
     Open {
         /// The index of the edge's first point.
         from: usize,
@@ -71,7 +69,7 @@ pub enum PolyhedronError {
         to: usize,
     },
     /// The points or the faces enclose no volume.
-    #[error("a polyhedron without volume")]
+    #[error("the faces enclose no volume")]
     Empty,
 }
 

@@ -91,8 +91,8 @@ impl FacePair<'_> {
             [corner] => {
                 self.is_on_one_side(&shared)
                     || swapped.is_on_one_side(&shared)
-                    || self.passes_beside(corner)
-                    || swapped.passes_beside(corner)
+                    || self.misses(corner)
+                    || swapped.misses(corner)
             }
             [i, j] => {
                 let has_edge = |face: &PolyhedronFace| {
@@ -123,8 +123,8 @@ impl FacePair<'_> {
     }
 
     /// Whether the first face, a triangle, cuts the plane of the second one along a segment from the
-    /// common corner that leaves it beside the second face, a triangle.
-    fn passes_beside(&self, corner: usize) -> bool {
+    /// common corner that lies outside the second face, a triangle.
+    fn misses(&self, corner: usize) -> bool {
         let [Some(own), Some(other)] = self.planes else {
             return false;
         };

@@ -5,6 +5,13 @@ use std::ops::Range;
 use super::error::SpannedError;
 use super::region::concerns_circles;
 use crate::construction::ConstructionError;
+use crate::polyhedron::PolyhedronError;
+
+/// The error of points and faces that bound no solid.
+pub(super) fn invalid_polyhedron(error: &PolyhedronError, span: &Range<usize>) -> SpannedError {
+    let found = format!("an invalid polyhedron ({error})");
+    SpannedError::input(span.clone(), found, "closed faces around a solid")
+}
 
 /// The error of a construction without an exact result.
 pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>) -> SpannedError {

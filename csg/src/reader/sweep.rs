@@ -28,20 +28,11 @@ impl Extrusion<'_> {
         region: &Region,
         place: &Range<usize>,
     ) -> Result<SolidId, SpannedError> {
-        as_parts_or_whole(region, place, |r| self.of_region(builder, r))
-    }
-
-    fn of_region(&self, builder: &mut Builder, region: &Region) -> Result<SolidId, SpannedError> {
-        match region {
-            Region::Figure(figure) => self.of_figure(builder, figure),
-            Region::Combined { op, operands, .. } => {
-                let parts: Vec<SolidId> = operands
-                    .iter()
-                    .map(|operand| self.of_region(builder, operand))
-                    .collect::<Result<_, _>>()?;
-                Ok(builder.operation(operation(*op), &parts))
-            }
-        }
+        as_parts_or_whole(region, place, |region| {
+            solid_of(builder, region, false, &|builder, figure, _| {
+                self.of_figure(builder, figure)
+            })
+        })
     }
 
     fn of_figure(
@@ -91,6 +82,27 @@ fn as_parts_or_whole(
         Ok(Some(whole)) => solid(&Region::new(whole, region.span())).map_err(|_| refused),
         Ok(None) => Ok(SolidId::EMPTY),
         Err(_) => Err(refused),
+    }
+}
+
+/// The solid of a region, from the solid of each of its figures. The last argument of `of_figure` says
+/// whether the figure is cut by others.
+fn solid_of(
+    builder: &mut Builder,
+    region: &Region,
+    is_cut: bool,
+    of_figure: &impl Fn(&mut Builder, &RegionFigure, bool) -> Result<SolidId, SpannedError>,
+) -> Result<SolidId, SpannedError> {
+    match region {
+        Region::Figure(figure) => of_figure(builder, figure, is_cut),
+        Region::Combined { op, operands, .. } => {
+            let is_cut = is_cut || *op != FigureOperation::Union;
+            let parts: Vec<SolidId> = operands
+                .iter()
+                .map(|operand| solid_of(builder, operand, is_cut, of_figure))
+                .collect::<Result<_, _>>()?;
+            Ok(builder.operation(operation(*op), &parts))
+        }
     }
 }
 
@@ -218,33 +230,18 @@ impl Revolution<'_> {
         region: &Region,
         place: &Range<usize>,
     ) -> Result<SolidId, SpannedError> {
-        as_parts_or_whole(region, place, |r| self.of_region(builder, r, false))
-    }
-
-    fn of_region(
-        &self,
-        builder: &mut Builder,
-        region: &Region,
-        is_combined: bool,
-    ) -> Result<SolidId, SpannedError> {
-        match region {
-            Region::Figure(figure) => self.of_figure(builder, figure, is_combined),
-            Region::Combined { op, operands, .. } => {
-                let is_combined = is_combined || *op != FigureOperation::Union;
-                let parts: Vec<SolidId> = operands
-                    .iter()
-                    .map(|operand| self.of_region(builder, operand, is_combined))
-                    .collect::<Result<_, _>>()?;
-                Ok(builder.operation(operation(*op), &parts))
-            }
-        }
+        as_parts_or_whole(region, place, |region| {
+            solid_of(builder, region, false, &|builder, figure, is_cut| {
+                self.of_figure(builder, figure, is_cut)
+            })
+        })
     }
 
     fn of_figure(
         &self,
         builder: &mut Builder,
         region: &RegionFigure,
-        is_combined: bool,
+        is_cut: bool,
     ) -> Result<SolidId, SpannedError> {
         let span = &region.span;
         let wrong = |error: PrimitiveError| bad_length(error, None, span.clone());
@@ -258,12 +255,12 @@ impl Revolution<'_> {
             let lift = Transform::shift([Rational::ZERO, Rational::ZERO, z]);
             return Ok(builder.moved(torus, lift));
         }
-        if figure.crosses_axis() && !is_combined {
+        if figure.crosses_axis() && !is_cut {
             return Err(wrong(PrimitiveError::AcrossAxis));
         }
         // OpenSCAD revolves a figure on the other side of the axis, too. Of an operand only the part
         // on this side matters.
-        let is_beyond = figure.is_left_of_axis() && !is_combined;
+        let is_beyond = figure.is_left_of_axis() && !is_cut;
         let figure = match is_beyond {
             true => figure.mirrored_x(),
             false => figure,

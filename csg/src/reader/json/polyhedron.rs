@@ -5,6 +5,7 @@ use std::sync::Arc;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
+use super::super::refusal::invalid_polyhedron;
 use super::value::ValueId;
 use super::{Fields, items, number};
 use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
@@ -57,10 +58,8 @@ pub(super) fn polyhedron(fields: &Fields<'_>) -> Result<Primitive, SpannedError>
     };
     let faces = fields.array(member, "an array of faces")?;
     let faces: Vec<PolyhedronFace> = faces.iter().map(face).collect::<Result<_, _>>()?;
-    let made = Polyhedron::from_faces(&points, &faces).map_err(|error| {
-        let span = document.value(member.value).span.clone();
-        SpannedError::input(span, error.to_string(), "closed faces around a solid")
-    })?;
+    let made = Polyhedron::from_faces(&points, &faces)
+        .map_err(|error| invalid_polyhedron(&error, &document.value(member.value).span))?;
     let polyhedron = Arc::new(made.polyhedron);
     Ok(Primitive::Polyhedron { polyhedron })
 }

@@ -8,7 +8,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::number::{bad_length, show};
-use super::super::refusal::construction_error;
+use super::super::refusal::{construction_error, invalid_polyhedron};
 use super::super::region::{Region, bad_figure};
 use super::super::spanned::Spanned;
 use super::super::sweep::{Extrusion, Revolution};
@@ -330,10 +330,8 @@ impl Machine {
         let points: Vec<SpacePoint> = points.into_iter().map(point).collect::<Result<_, _>>()?;
         let faces = faces.into_iter().map(|tuple| face(tuple, points.len()));
         let faces: Vec<PolyhedronFace> = faces.collect::<Result<_, _>>()?;
-        let made = Polyhedron::from_faces(&points, &faces).map_err(|error| {
-            let expected = "closed faces around a solid";
-            SpannedError::input(span.clone(), error.to_string(), expected)
-        })?;
+        let made = Polyhedron::from_faces(&points, &faces)
+            .map_err(|error| invalid_polyhedron(&error, span))?;
         if made.triangulated > 0 {
             self.remarks.add_triangulated(made.triangulated, span);
         }

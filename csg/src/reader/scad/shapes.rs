@@ -6,6 +6,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::notes::Notes;
+use super::super::refusal::invalid_polyhedron;
 use super::super::region::bad_figure;
 use super::arguments::{Argument, Arguments};
 use super::facets::FacetRule;
@@ -140,7 +141,7 @@ fn faceted_sphere(
     let count = rings as usize * sides as usize;
     if count > MAX_SPHERE_CORNERS {
         let error = PolyhedronError::TooManyCorners { count };
-        return Err(bad_polyhedron(&error, arguments));
+        return Err(invalid_polyhedron(&error, &arguments.span));
     }
     let mut points: Vec<SpacePoint> = Vec::new();
     for ring in 0..rings {
@@ -165,15 +166,10 @@ fn faceted_sphere(
         }
     }
     let made = Polyhedron::from_faces(&points, &faces);
-    let made = made.map_err(|error| bad_polyhedron(&error, arguments))?;
+    let made = made.map_err(|error| invalid_polyhedron(&error, &arguments.span))?;
     let polyhedron = Arc::new(made.polyhedron);
     let sphere = Primitive::Polyhedron { polyhedron };
     Ok(MovedPrimitive::new(sphere, Transform::new()))
-}
-
-fn bad_polyhedron(error: &PolyhedronError, arguments: &Arguments) -> SpannedError {
-    let expected = "closed faces around a solid";
-    SpannedError::input(arguments.span.clone(), error.to_string(), expected)
 }
 
 /// A polyhedron. OpenSCAD's faces run clockwise as seen from the outside.
@@ -211,7 +207,7 @@ pub(super) fn polyhedron(
     let faces: Vec<PolyhedronFace> = faces.collect::<Result<_, SpannedError>>()?;
     let made = match Polyhedron::from_faces(&points, &faces) {
         Err(PolyhedronError::Empty) => return Ok(None),
-        made => made.map_err(|error| bad_polyhedron(&error, arguments))?,
+        made => made.map_err(|error| invalid_polyhedron(&error, &arguments.span))?,
     };
     if made.triangulated > 0 {
         notes.triangulated(made.triangulated, arguments.span.clone());

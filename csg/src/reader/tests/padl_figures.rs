@@ -207,7 +207,7 @@ fn wrong_figures() {
     assert_snapshot!(refused("P = HULL(BLO(X=1, Y=1, Z=1), TOR(RMAJ=3, RMIN=1))"), @"part:1:5: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and prisms between the same two planes");
     assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0))"), @"part:1:5: found points without faces, expected points, `;` and faces");
     assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0), (0,1,0); (0,1,3))"), @"part:1:42: found the number 3, expected the index of a point, from 0 to 2");
-    assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0), (0,1,0); (0,1,2))"), @"part:1:5: found the faces are not closed: the edge from point 0 to point 1 has no face on its other side, expected closed faces around a solid");
+    assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0), (0,1,0); (0,1,2))"), @"part:1:5: found an invalid polyhedron (the edge from point 0 to point 1 has no face on its other side), expected closed faces around a solid");
     assert_snapshot!(refused("F = CIR(R=1)\nP = F + 1"), @"part:2:5: found a figure, expected a number before `+`");
     assert_snapshot!(refused("P = PIR(CIR(R=1), H=2)"), @"part:1:5: found the unknown name `PIR`, expected a name set on an earlier line (did you mean `pi`?)");
 }

@@ -31,7 +31,8 @@ pub fn random_part(profile: Profile, seed: u64) -> Result<Expression> {
 }
 
 fn expression(model: &PartModel) -> Result<Expression> {
-    crate::read_text(&write(model, write::Format::Json), Format::Json)
+    let format = write::format(model, Format::Json);
+    crate::read_text(&write(model, format), format)
 }
 
 /// The measures of a part by another kernel.

@@ -4,7 +4,7 @@
 
 use crate::checks::{Check, CheckReport, CheckSubject, Checker, Finding, ViewChecks, views};
 use crate::generator::model::{ModelNodeKind, ModelOperation, PartModel};
-use crate::generator::write::{Format, read, write};
+use crate::generator::write::description;
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::ErrorKind;
 use premio_csg::recover::recovered;
@@ -207,9 +207,12 @@ pub fn message(panic: &(dyn Any + Send)) -> &str {
 /// Runs the trial of a tree.
 pub(crate) fn examine(model: &PartModel, terms: &TrialConfig) -> TrialOutcome {
     let started = Instant::now();
-    let description = match read(&write(model, Format::Json), Format::Json) {
+    let description = match description(model) {
         Ok(description) => description,
-        Err(error) if error.kind == ErrorKind::Limit => return refused(error.to_string(), 0),
+        // Not all figures have solids with exact boundaries.
+        Err(error) if error.kind == ErrorKind::Limit || model.has_figures() => {
+            return refused(error.to_string(), 0);
+        }
         Err(error) => return TrialOutcome::wrong(FailureKind::Input, error.to_string()),
     };
     // As the program does: the relations that the rounding of coordinates destroyed are recovered.
@@ -394,7 +397,7 @@ fn sides(model: &PartModel, op: ModelOperation) -> Option<[PartModel; 2]> {
 
 /// The volume of a tree; `None` if it is refused, which is the subject of its own trial.
 fn volume(model: &PartModel, terms: &TrialConfig) -> Option<f64> {
-    let tree = read(&write(model, Format::Json), Format::Json).ok()?.tree;
+    let tree = description(model).ok()?.tree;
     let part = evaluate(&tree, &options(terms)).ok()?;
     Some(part.mass().volume)
 }
@@ -402,8 +405,7 @@ fn volume(model: &PartModel, terms: &TrialConfig) -> Option<f64> {
 /// The diagonal of a box that contains the primitives of these models.
 pub(crate) fn diagonal(models: &[&PartModel]) -> f64 {
     let boxes = models.iter().filter_map(|model| {
-        let text = write(model, Format::Json);
-        let tree = read(&text, Format::Json).ok()?.tree;
+        let tree = description(model).ok()?.tree;
         let material = premio_csg::ray_casting::RayOracle::new(&tree);
         Some(*material.bounds())
     });

@@ -111,8 +111,8 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{Deep, Grid, Near, Parts, Rounded, Tangent, Wide};
-        const CHOICES: [ProfileChoice; 8] = [
+        use Profile::{Deep, Figures, Grid, Near, Parts, Rounded, Tangent, Wide};
+        const CHOICES: [ProfileChoice; 9] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -121,6 +121,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Wide),
             ProfileChoice::One(Parts),
             ProfileChoice::One(Rounded),
+            ProfileChoice::One(Figures),
         ];
         &CHOICES
     }

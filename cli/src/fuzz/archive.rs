@@ -4,7 +4,7 @@ use super::FuzzError;
 use super::item::Item;
 use super::state::RunState;
 use premio_verify::generator::model::PartModel;
-use premio_verify::generator::write::{Format, read, write};
+use premio_verify::generator::write::{Format, description, format, read, write};
 use premio_verify::trial::{TrialMeasures, TrialOutcome, Verdict};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -55,15 +55,16 @@ impl Archive {
         model: &PartModel,
         outcome: &TrialOutcome,
     ) -> Result<String, FuzzError> {
-        let tree = |text: &str, format| read(text, format).map(|d| d.tree).ok();
-        let exact = tree(&write(model, Format::Json), Format::Json);
+        let exact = description(model).map(|d| d.tree).ok();
         let mut files = Vec::new();
-        for &format in &self.formats {
+        let mut formats: Vec<Format> = self.formats.iter().map(|&f| format(model, f)).collect();
+        formats.dedup();
+        for format in formats {
             let file = format!("{}-{}.{}", item.source, item.seed, format.ending());
             let path = self.folder.join(&file);
             let text = write(model, format);
             premio::files::write_whole(&text, &path).map_err(|e| FuzzError::file(&path, e))?;
-            let same_tree = tree(&text, format) == exact;
+            let same_tree = read(&text, format).map(|d| d.tree).ok() == exact;
             files.push(Written { file, same_tree });
         }
         let (verdict, measures) = match &outcome.verdict {

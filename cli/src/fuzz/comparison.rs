@@ -13,7 +13,7 @@ use premio_verify::against::template::ModelTemplate;
 use premio_verify::generator::model::PartModel;
 use premio_verify::generator::profile::Profile;
 use premio_verify::generator::profile::rounded::{CoordinateRounding, meant};
-use premio_verify::generator::write::{Format, write};
+use premio_verify::generator::write::{Format, description, format, write};
 use premio_verify::trial::{TrialMeasures, Verdict};
 use std::io;
 use std::sync::atomic::AtomicBool;
@@ -28,16 +28,17 @@ pub enum ModelForm {
 }
 
 impl ModelForm {
-    fn ending(&self) -> &'static str {
+    fn ending(&self, model: &PartModel) -> &'static str {
         match self {
-            Self::Description(format) => format.ending(),
+            Self::Description(wanted) => format(model, *wanted).ending(),
             Self::Program(template) => template.ending(),
         }
     }
 
-    fn text(&self, model: &PartModel) -> String {
+    /// The text of a model; `None` if the program's language has no words for it.
+    fn text(&self, model: &PartModel) -> Option<String> {
         match self {
-            Self::Description(format) => write(model, *format),
+            Self::Description(format) => Some(write(model, *format)),
             Self::Program(template) => template.program(model),
         }
     }
@@ -102,15 +103,15 @@ impl<'a> AgainstExaminer<'a> {
         }
     }
 
-    /// The result of the program for a model; none where the run shall stop.
-    fn program(&self, model: &PartModel) -> io::Result<Option<(ProgramResult, f64)>> {
+    /// The result of the program for the text of a model; none where the run shall stop.
+    fn program(&self, model: &PartModel, text: &str) -> io::Result<Option<(ProgramResult, f64)>> {
         let folder = tempfile::tempdir()?;
         let config = self.config;
         let input = folder
             .path()
             .join("model")
-            .with_extension(config.form.ending());
-        std::fs::write(&input, config.form.text(model))?;
+            .with_extension(config.form.ending(model));
+        std::fs::write(&input, text)?;
         let format = config.command.output;
         let ending = format.map_or("none", |format| format.ending());
         let output = folder.path().join("out").with_extension(ending);
@@ -138,10 +139,10 @@ impl Examine for AgainstExaminer<'_> {
             ours: examined.outcome.seconds,
             ..AgainstTimes::default()
         };
-        let verdict = match expected {
+        let verdict = match expected.zip(self.config.form.text(model)) {
             None => AgainstVerdict::Unknown,
-            Some(measures) => {
-                let Some((result, seconds)) = self.program(model)? else {
+            Some((measures, text)) => {
+                let Some((result, seconds)) = self.program(model, &text)? else {
                     return Ok(None);
                 };
                 times.program = seconds;
@@ -184,8 +185,7 @@ fn displacement(item: Item, files: &[FileModel], measures: &TrialMeasures) -> f6
 
 /// The model of a file, with the effect of its rounding.
 pub fn file_model(model: PartModel) -> FileModel {
-    use premio_verify::generator::write::read;
-    let tree = read(&write(&model, Format::Json), Format::Json).map(|read| read.tree);
+    let tree = description(&model).map(|read| read.tree);
     let recovery = tree
         .ok()
         .and_then(|tree| premio_csg::recover::recovered(&tree));

@@ -82,8 +82,9 @@ impl ModelTemplate {
         self.language.ending()
     }
 
-    /// The program of a model: a statement for each node, the last one defines `model`.
-    pub fn program(&self, model: &PartModel) -> String {
+    /// The program of a model: a statement for each node, the last one defines `model`. `None` if
+    /// the model has figures, hulls or Minkowski sums, for which there are no statements.
+    pub fn program(&self, model: &PartModel) -> Option<String> {
         let mut text = self.before.clone();
         let last = model.nodes().len().saturating_sub(1);
         for (id, node) in model.nodes().iter().enumerate() {
@@ -92,13 +93,13 @@ impl ModelTemplate {
                 false => format!("s{id}"),
             };
             text += &self.indent;
-            text += &self.statement(&name, node);
+            text += &self.statement(&name, node)?;
         }
         text += &self.after;
-        text
+        Some(text)
     }
 
-    fn statement(&self, name: &str, node: &ModelNode) -> String {
+    fn statement(&self, name: &str, node: &ModelNode) -> Option<String> {
         let mut value = match &node.kind {
             ModelNodeKind::Leaf(primitive) => call(primitive),
             ModelNodeKind::Operation(op, children) => {
@@ -106,15 +107,16 @@ impl ModelTemplate {
                 let list = self.list(&names);
                 format!("{}({list})", operation(*op))
             }
+            ModelNodeKind::Sweep(_) | ModelNodeKind::Construction(..) => return None,
         };
         if !node.steps.is_empty() {
             let rows = matrix(&node.steps).map(|row| self.list(&row.map(number)));
             value = format!("moved({value}, {})", self.list(&rows));
         }
-        match self.language {
+        Some(match self.language {
             TemplateLanguage::Python => format!("{name} = {value}\n"),
             TemplateLanguage::Cpp => format!("auto {name} = {value};\n"),
-        }
+        })
     }
 
     fn list(&self, items: &[String]) -> String {
@@ -237,9 +239,14 @@ mod tests {
              s1 = moved(cone(1.0, 8.673617379884035e-19), {moved})\n  \
              model = difference([s0, s1])\nend\n"
         );
-        assert_eq!(python.program(&model()), expected);
+        assert_eq!(python.program(&model()).unwrap(), expected);
         let cpp = ModelTemplate::new("{{model}}", TemplateLanguage::Cpp).unwrap();
-        let last = cpp.program(&model()).lines().last().map(str::to_owned);
+        let last = cpp
+            .program(&model())
+            .unwrap()
+            .lines()
+            .last()
+            .map(str::to_owned);
         assert_eq!(last.as_deref(), Some("auto model = difference({s0, s1});"));
     }
 

@@ -3,6 +3,8 @@
 //! The nodes lie in one arena, children before their parents and the root last, so that models of
 //! any depth can be created, traversed, changed and dropped without recursion.
 
+use super::figure::ModelSweep;
+pub use super::operation::ModelOperation;
 use super::random::RandomChoices;
 use serde::{Deserialize, Serialize};
 
@@ -60,15 +62,13 @@ pub enum ModelStep {
     Turn(ModelAxis, f64),
 }
 
-/// A regularised set operation.
+/// A construction from solids, as OpenSCAD has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub enum ModelOperation {
-    /// The points in any child.
-    Union,
-    /// The points in every child.
-    Intersection,
-    /// The points in the first child and in no later one.
-    Difference,
+pub enum ModelConstruction {
+    /// The convex hull.
+    Hull,
+    /// The Minkowski sum.
+    Minkowski,
 }
 
 /// The index of a node in its model.
@@ -79,8 +79,12 @@ pub type ModelNodeId = usize;
 pub enum ModelNodeKind {
     /// A primitive.
     Leaf(ModelPrimitive),
+    /// A solid that a figure sweeps.
+    Sweep(ModelSweep),
     /// An operation on one child or more.
     Operation(ModelOperation, Vec<ModelNodeId>),
+    /// A construction from one child or more.
+    Construction(ModelConstruction, Vec<ModelNodeId>),
 }
 
 /// A node.
@@ -111,9 +115,21 @@ pub struct PartModel {
     pub notation: Notation,
 }
 
-impl ModelOperation {
-    /// The operations.
-    pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
+impl ModelNodeKind {
+    /// The nodes of which this one is made.
+    pub fn children(&self) -> &[ModelNodeId] {
+        match self {
+            Self::Leaf(_) | Self::Sweep(_) => &[],
+            Self::Operation(_, children) | Self::Construction(_, children) => children,
+        }
+    }
+
+    fn children_mut(&mut self) -> &mut [ModelNodeId] {
+        match self {
+            Self::Leaf(_) | Self::Sweep(_) => &mut [],
+            Self::Operation(_, children) | Self::Construction(_, children) => children,
+        }
+    }
 }
 
 impl ModelAxis {
@@ -162,6 +178,36 @@ impl PartModel {
         self.nodes.len() - 1
     }
 
+    /// Adds a solid that a figure sweeps.
+    pub fn sweep(&mut self, sweep: ModelSweep, steps: Vec<ModelStep>) -> ModelNodeId {
+        let kind = ModelNodeKind::Sweep(sweep);
+        self.nodes.push(ModelNode { kind, steps });
+        self.nodes.len() - 1
+    }
+
+    /// Adds a construction from existing nodes that have no parent yet.
+    pub fn construction(
+        &mut self,
+        construction: ModelConstruction,
+        of: Vec<ModelNodeId>,
+    ) -> ModelNodeId {
+        let kind = ModelNodeKind::Construction(construction, of);
+        let steps = Vec::new();
+        self.nodes.push(ModelNode { kind, steps });
+        self.nodes.len() - 1
+    }
+
+    /// Whether the model has figures, hulls or Minkowski sums, which `.csg` can represent only.
+    pub fn has_figures(&self) -> bool {
+        let has_figures = |node: &ModelNode| {
+            matches!(
+                node.kind,
+                ModelNodeKind::Sweep(_) | ModelNodeKind::Construction(..)
+            )
+        };
+        self.nodes.iter().any(has_figures)
+    }
+
     /// Adds an operation on existing nodes that have no parent yet.
     pub fn operation(
         &mut self,
@@ -191,9 +237,8 @@ impl PartModel {
         let before = self.nodes.len();
         self.nodes.extend(other.nodes.iter().cloned());
         for node in &mut self.nodes[before..] {
-            if let ModelNodeKind::Operation(_, children) = &mut node.kind {
-                children.iter_mut().for_each(|child| *child += before);
-            }
+            let children = node.kind.children_mut();
+            children.iter_mut().for_each(|child| *child += before);
         }
         self.nodes.len() - 1
     }
@@ -213,20 +258,22 @@ impl PartModel {
         self.nodes.len().checked_sub(1)
     }
 
-    /// The nodes that are primitives.
+    /// The nodes that are primitives or swept by figures.
     pub(crate) fn leaves(&self) -> impl Iterator<Item = ModelNodeId> {
-        let is_leaf = |id: &ModelNodeId| matches!(self.nodes[*id].kind, ModelNodeKind::Leaf(_));
+        let is_leaf = |id: &ModelNodeId| {
+            matches!(
+                self.nodes[*id].kind,
+                ModelNodeKind::Leaf(_) | ModelNodeKind::Sweep(_)
+            )
+        };
         (0..self.nodes.len()).filter(is_leaf)
     }
 
     /// The subtrees below the root; empty for a primitive.
     pub(crate) fn children(&self) -> Vec<Self> {
-        match self.nodes.last().map(|root| &root.kind) {
-            Some(ModelNodeKind::Operation(_, children)) => {
-                children.iter().map(|&child| self.subtree(child)).collect()
-            }
-            _ => Vec::new(),
-        }
+        let root = self.nodes.last();
+        let children = root.map_or(&[][..], |root| root.kind.children());
+        children.iter().map(|&child| self.subtree(child)).collect()
     }
 
     /// The subtree below a node.
@@ -234,9 +281,8 @@ impl PartModel {
         let mut wanted = vec![false; self.nodes.len()];
         wanted[root] = true;
         for id in (0..=root).rev() {
-            if let (true, ModelNodeKind::Operation(_, children)) =
-                (wanted[id], &self.nodes[id].kind)
-            {
+            if wanted[id] {
+                let children = self.nodes[id].kind.children();
                 children.iter().for_each(|&child| wanted[child] = true);
             }
         }
@@ -245,37 +291,38 @@ impl PartModel {
         for (id, node) in self.nodes.iter().enumerate().filter(|&(id, _)| wanted[id]) {
             new_id[id] = part.nodes.len();
             let mut node = node.clone();
-            if let ModelNodeKind::Operation(_, children) = &mut node.kind {
-                children
-                    .iter_mut()
-                    .for_each(|child| *child = new_id[*child]);
-            }
+            let children = node.kind.children_mut();
+            children
+                .iter_mut()
+                .for_each(|child| *child = new_id[*child]);
             part.nodes.push(node);
         }
         part
     }
 
-    /// The model without some of its primitives. Operations without children are removed, too, and
+    /// The model without some of its leaves. Operations without children are removed, too, and
     /// those with one child are replaced by it.
     pub(crate) fn without(&self, gone: impl Fn(ModelNodeId) -> bool) -> Self {
         let mut fewer = Self::with_notation(self.notation);
         let mut new_id: Vec<Option<ModelNodeId>> = vec![None; self.nodes.len()];
         for (id, node) in self.nodes.iter().enumerate() {
             let steps = node.steps.clone();
-            new_id[id] = match &node.kind {
-                ModelNodeKind::Leaf(_) if gone(id) => None,
-                ModelNodeKind::Leaf(primitive) => Some(fewer.leaf(*primitive, steps)),
-                ModelNodeKind::Operation(op, children) => {
-                    let left: Vec<ModelNodeId> =
-                        children.iter().filter_map(|&c| new_id[c]).collect();
-                    match left.as_slice() {
-                        [] => None,
-                        &[only] => {
-                            fewer.nodes[only].steps.extend(steps);
-                            Some(only)
-                        }
-                        _ => Some(fewer.operation(*op, left, steps)),
-                    }
+            let children = node.kind.children().iter();
+            let left: Vec<ModelNodeId> = children.filter_map(|&child| new_id[child]).collect();
+            new_id[id] = match (&node.kind, left.as_slice()) {
+                (ModelNodeKind::Leaf(_) | ModelNodeKind::Sweep(_), _) if gone(id) => None,
+                (ModelNodeKind::Leaf(primitive), _) => Some(fewer.leaf(*primitive, steps)),
+                (ModelNodeKind::Sweep(sweep), _) => Some(fewer.sweep(sweep.clone(), steps)),
+                (_, []) => None,
+                (_, &[only]) => {
+                    fewer.nodes[only].steps.extend(steps);
+                    Some(only)
+                }
+                (ModelNodeKind::Operation(op, _), _) => Some(fewer.operation(*op, left, steps)),
+                (ModelNodeKind::Construction(construction, _), _) => {
+                    let id = fewer.construction(*construction, left);
+                    fewer.nodes[id].steps = steps;
+                    Some(id)
                 }
             };
         }

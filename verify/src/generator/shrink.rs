@@ -1,5 +1,6 @@
 //! Reduces a failing tree to a minimal one that still fails.
 
+use super::figure::ModelSweep;
 use super::model::{ModelNodeId, ModelNodeKind, ModelPrimitive, ModelStep, PartModel};
 use std::iter;
 
@@ -68,7 +69,11 @@ fn digits(node: &super::model::ModelNode) -> usize {
     });
     let lengths = match &node.kind {
         ModelNodeKind::Leaf(primitive) => lengths(primitive).iter().map(count).sum(),
-        ModelNodeKind::Operation(..) => 0,
+        ModelNodeKind::Sweep(sweep) => {
+            let figure = &sweep.figure;
+            FIGURE * figure.count() + figure.numbers().iter().map(count).sum::<usize>()
+        }
+        ModelNodeKind::Operation(..) | ModelNodeKind::Construction(..) => 0,
     };
     lengths + steps.sum::<usize>()
 }
@@ -131,8 +136,10 @@ fn with_steps(model: &PartModel, id: ModelNodeId, steps: Vec<ModelStep>) -> Part
 
 /// The tree with simpler lengths of one primitive, or a block in its place.
 fn rounder(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
-    let ModelNodeKind::Leaf(primitive) = &model.nodes()[id].kind else {
-        return Vec::new();
+    let primitive = match &model.nodes()[id].kind {
+        ModelNodeKind::Leaf(primitive) => primitive,
+        ModelNodeKind::Sweep(sweep) => return with_simpler_figures(model, id, sweep),
+        ModelNodeKind::Operation(..) | ModelNodeKind::Construction(..) => return Vec::new(),
     };
     let mut found = Vec::new();
     let old = lengths(primitive);
@@ -152,6 +159,24 @@ fn rounder(model: &PartModel, id: ModelNodeId) -> Vec<PartModel> {
     }
     found
 }
+
+/// The tree with simpler figures of one sweep.
+fn with_simpler_figures(model: &PartModel, id: ModelNodeId, sweep: &ModelSweep) -> Vec<PartModel> {
+    let figures = sweep.figure.simpler().into_iter();
+    figures
+        .map(|figure| {
+            let mut changed = model.clone();
+            if let Some(node) = changed.node_mut(id) {
+                let motion = sweep.motion;
+                node.kind = ModelNodeKind::Sweep(ModelSweep { figure, motion });
+            }
+            changed
+        })
+        .collect()
+}
+
+/// The weight of a figure, in digits.
+const FIGURE: usize = 64;
 
 fn lengths(primitive: &ModelPrimitive) -> Vec<f64> {
     match *primitive {

@@ -1,6 +1,7 @@
 //! Profiles: kinds of random trees, each difficult in its own way.
 
 mod deep;
+mod figures;
 mod grid;
 mod near;
 mod parts;
@@ -32,11 +33,13 @@ pub enum Profile {
     Parts,
     /// A part of `parts`, turned, with every primitive at rounded coordinates.
     Rounded,
+    /// One to three solids of figures: extrusions, revolutions, hulls and Minkowski sums.
+    Figures,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -44,6 +47,7 @@ impl Profile {
         Self::Wide,
         Self::Parts,
         Self::Rounded,
+        Self::Figures,
     ];
 
     /// The name, as it is written on the command line.
@@ -56,6 +60,7 @@ impl Profile {
             Self::Wide => "wide",
             Self::Parts => "parts",
             Self::Rounded => "rounded",
+            Self::Figures => "figures",
         }
     }
 
@@ -73,6 +78,9 @@ impl Profile {
             }
             Self::Deep => {
                 "A chain of 100 to 3000 levels of operations, each with a small primitive"
+            }
+            Self::Figures => {
+                "One to three solids of figures: extrusions, revolutions, hulls and Minkowski sums"
             }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
@@ -94,6 +102,7 @@ impl Profile {
             Self::Wide => wide::model(seed),
             Self::Parts => parts::model(seed),
             Self::Rounded => rounded::model(seed),
+            Self::Figures => figures::model(seed),
         }
     }
 }
@@ -117,13 +126,17 @@ impl FromStr for Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generator::write::{Format, read, write};
+    use crate::generator::write::{Format, description, read, write};
 
     #[test]
     fn every_seed_is_a_tree() {
         for profile in Profile::ALL {
             for seed in 0..200 {
-                let text = write(&profile.model(seed), Format::Json);
+                let model = profile.model(seed);
+                if model.has_figures() {
+                    continue;
+                }
+                let text = write(&model, Format::Json);
                 let tree = read(&text, Format::Json).expect(&text).tree;
                 let leaves = tree.leaves().count();
                 let most = match profile {
@@ -132,10 +145,24 @@ mod tests {
                     Profile::Deep => 3001,
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,
+                    Profile::Figures => 3,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }
         }
+    }
+
+    /// Every seed of figures is read, or refused because it has no exact boundary. Four of five are
+    /// read.
+    #[test]
+    fn figures_are_read() {
+        let mut refused = 0;
+        for seed in 0..200 {
+            let model = Profile::Figures.model(seed);
+            assert!(model.has_figures() && model.leaves().count() <= 12);
+            refused += usize::from(description(&model).is_err());
+        }
+        assert!(refused <= 40, "{refused} refused");
     }
 
     #[test]
@@ -166,5 +193,8 @@ mod tests {
             .map(|seed| sum(&write(&Profile::Parts.model(seed), Format::Padl)))
             .collect();
         insta::assert_debug_snapshot!("more_parts", parts.iter().fold(0u64, |a, b| a ^ b));
+        insta::assert_snapshot!("figures", write(&Profile::Figures.model(0), Format::Csg));
+        let figures = (1..200).map(|seed| sum(&write(&Profile::Figures.model(seed), Format::Csg)));
+        insta::assert_debug_snapshot!("more_figures", figures.fold(0u64, |a, b| a ^ b));
     }
 }

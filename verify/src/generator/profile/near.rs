@@ -43,7 +43,7 @@ fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId)
             .insert(0, ModelStep::Turn(ModelAxis::any(random), by)),
         (4, _) => node.steps.push(ModelStep::Turn(ModelAxis::any(random), by)),
         (_, ModelNodeKind::Leaf(primitive)) => *primitive = grown(primitive, by),
-        (_, ModelNodeKind::Operation(..)) => {}
+        (_, _) => {}
     }
 }
 

@@ -70,6 +70,12 @@ pub(super) fn model(seed: u64) -> PartModel {
             ModelNodeKind::Operation(op, children) => {
                 flat.operation(*op, children.clone(), Vec::new());
             }
+            ModelNodeKind::Sweep(sweep) => {
+                flat.sweep(sweep.clone(), steps_outwards(&meant, &parents, id));
+            }
+            ModelNodeKind::Construction(construction, children) => {
+                flat.construction(*construction, children.clone());
+            }
         }
     }
     flat
@@ -79,9 +85,8 @@ pub(super) fn model(seed: u64) -> PartModel {
 fn parents(model: &PartModel) -> Vec<Option<ModelNodeId>> {
     let mut parents = vec![None; model.nodes().len()];
     for (id, node) in model.nodes().iter().enumerate() {
-        if let ModelNodeKind::Operation(_, children) = &node.kind {
-            children.iter().for_each(|&child| parents[child] = Some(id));
-        }
+        let children = node.kind.children();
+        children.iter().for_each(|&child| parents[child] = Some(id));
     }
     parents
 }

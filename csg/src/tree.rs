@@ -116,6 +116,31 @@ impl Tree {
         self.root.is_none()
     }
 
+    /// The tree below a node.
+    pub(crate) fn subtree(&self, root: NodeId) -> Self {
+        // Parents come before their children.
+        let mut is_below = vec![false; self.nodes.len()];
+        is_below[root.0] = true;
+        for (index, node) in self.nodes.iter().enumerate() {
+            if let (true, TreeNode::Operation { children, .. }) = (is_below[index], node) {
+                children.iter().for_each(|child| is_below[child.0] = true);
+            }
+        }
+        let kept: Vec<usize> = (0..self.nodes.len()).filter(|&i| is_below[i]).collect();
+        let new_id = |child: &NodeId| NodeId(kept.partition_point(|&known| known < child.0));
+        let copy = |&index: &usize| match &self.nodes[index] {
+            TreeNode::Leaf(placed) => TreeNode::Leaf(placed.clone()),
+            TreeNode::Operation { op, children } => TreeNode::Operation {
+                op: *op,
+                children: children.iter().map(new_id).collect(),
+            },
+        };
+        Self {
+            nodes: kept.iter().map(copy).collect(),
+            root: Some(NodeId(0)),
+        }
+    }
+
     /// The number of surfaces of all primitives.
     pub(crate) fn side_count(&self) -> usize {
         let counts = self.leaves().map(|leaf| leaf.1.primitive.side_count());

@@ -6,28 +6,44 @@ use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::ConstructionError;
+use super::evaluated::PlaneFacedBoundary;
 use crate::builder::{Builder, SolidId};
 use crate::figure::{Figure, FigureEdge, PlaneMap};
 use crate::polyhedron::{Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, index_loops};
 use crate::primitive::Primitive;
-use crate::tree::{Operation, PlacedPrimitive, TreeNode};
+use crate::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
 
-/// The primitives of a solid that is a union.
+/// The primitives of a solid that is a union. A difference or an intersection of solids with plane
+/// faces counts as a polyhedron.
 pub(super) fn of_union(
     builder: &Builder,
     solid: SolidId,
     what: &'static str,
 ) -> Result<Vec<PlacedPrimitive>, ConstructionError> {
     let tree = builder.finish(solid)?;
-    let leaf = |node: &TreeNode| match node {
-        TreeNode::Leaf(placed) => Some(Ok(placed.clone())),
-        TreeNode::Operation {
-            op: Operation::Union,
-            ..
-        } => None,
-        TreeNode::Operation { .. } => Some(Err(ConstructionError::NotUnion(what))),
-    };
-    tree.nodes().iter().filter_map(leaf).collect()
+    let mut found = Vec::new();
+    let mut open: Vec<NodeId> = tree.root().into_iter().collect();
+    while let Some(id) = open.pop() {
+        match &tree[id] {
+            TreeNode::Leaf(placed) => found.push(placed.clone()),
+            TreeNode::Operation {
+                op: Operation::Union,
+                children,
+            } => open.extend(children.iter().rev()),
+            TreeNode::Operation { .. } => {
+                let boundary = PlaneFacedBoundary::of_tree(&tree.subtree(id))?;
+                let boundary = boundary.ok_or(ConstructionError::NotUnion(what))?;
+                if !boundary.faces.is_empty() {
+                    let polyhedron = Arc::new(boundary.polyhedron()?);
+                    found.push(PlacedPrimitive {
+                        primitive: Primitive::Polyhedron { polyhedron },
+                        motion: Motion::identity(),
+                    });
+                }
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// The corners of a primitive with plane faces, in its own frame.
@@ -91,7 +107,8 @@ pub(super) fn polyhedron(primitive: &Primitive) -> Result<Arc<Polyhedron>, Const
                 points.collect::<Vec<SpacePoint>>()
             };
             let rings = [at(&Rational::ZERO, &Rational::ONE), at(height, top)];
-            Arc::new(between(figure, &rings.concat())?)
+            let lengths = figure.contours().map(<[FigureEdge]>::len);
+            Arc::new(between(lengths, &rings.concat())?)
         }
         other => {
             let corners = own_corners(other).ok_or(ConstructionError::Elliptic)?;
@@ -100,10 +117,29 @@ pub(super) fn polyhedron(primitive: &Primitive) -> Result<Arc<Polyhedron>, Const
     })
 }
 
-/// The polyhedron between a polygon and a copy of it, by the corners of both.
-fn between(figure: &Figure, points: &[SpacePoint]) -> Result<Polyhedron, PolyhedronError> {
-    let count = figure.edges().len();
-    let loops = index_loops(figure.contours().map(<[FigureEdge]>::len));
+/// The polyhedron that a face sweeps along a segment.
+pub(super) fn swept_face(
+    polyhedron: &Polyhedron,
+    face: usize,
+    [from, to]: [&SpacePoint; 2],
+) -> Result<Polyhedron, PolyhedronError> {
+    let moved = |by: &SpacePoint| -> Vec<SpacePoint> {
+        let corners = polyhedron.corners(face);
+        let moved = corners.map(|p| std::array::from_fn(|i| &p[i] + &by[i]));
+        moved.collect()
+    };
+    let lengths = polyhedron.faces()[face].loops.iter().map(Vec::len);
+    between(lengths, &[moved(from), moved(to)].concat())
+}
+
+/// The polyhedron between a polygon and a copy of it, by the lengths of its loops and the corners of
+/// both.
+fn between(
+    lengths: impl Iterator<Item = usize>,
+    points: &[SpacePoint],
+) -> Result<Polyhedron, PolyhedronError> {
+    let count = points.len() / 2;
+    let loops = index_loops(lengths);
     let mut faces = Vec::new();
     for corners in &loops {
         let next = corners.iter().cycle().skip(1);

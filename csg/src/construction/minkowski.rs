@@ -6,11 +6,11 @@ use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::ConstructionError;
-use super::leaves::{Column, column, corners, of_union};
+use super::leaves::{Column, column, corners, of_union, own_corners, polyhedron, swept_face};
 use super::rounding::rounded;
 use crate::builder::{Builder, SolidId};
 use crate::figure::FigureError;
-use crate::polyhedron::{MAX_HULL_POINTS, Polyhedron, PolyhedronError, SpacePoint};
+use crate::polyhedron::{MAX_HULL_POINTS, Polyhedron, PolyhedronError, SpacePoint, dot};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::{Operation, PlacedPrimitive};
@@ -67,19 +67,77 @@ fn of_primitives(
     if let Some(sum) = of_columns(builder, one, two)? {
         return Ok(sum);
     }
-    let [Some(p), Some(q)] = [one, two].map(convex_corners) else {
-        return Err(ConstructionError::NoSum);
-    };
+    match [one, two].map(convex_corners) {
+        [Some(p), Some(q)] => hull_of_sums(builder, &p, &q),
+        [Some(convex), None] => with_convex(builder, two, &convex),
+        [None, Some(convex)] => with_convex(builder, one, &convex),
+        [None, None] => Err(ConstructionError::NoSum),
+    }
+}
+
+/// The hull of the sums of two points.
+fn hull_of_sums(
+    builder: &mut Builder,
+    p: &[SpacePoint],
+    q: &[SpacePoint],
+) -> Result<SolidId, ConstructionError> {
     let count = p.len().saturating_mul(q.len());
     if count > MAX_HULL_POINTS {
         return Err(PolyhedronError::TooManyPoints { count }.into());
     }
-    let sums = p.iter().flat_map(|a| {
-        q.iter()
-            .map(move |b| -> SpacePoint { std::array::from_fn(|i| &a[i] + &b[i]) })
-    });
-    let polyhedron = Arc::new(Polyhedron::convex_hull(&sums.collect::<Vec<_>>())?);
-    Ok(builder.primitive(Primitive::Polyhedron { polyhedron }))
+    let sums = p.iter().flat_map(|a| q.iter().map(|b| plus(a, b)));
+    let hull = Polyhedron::convex_hull(&sums.collect::<Vec<_>>())?;
+    Ok(polyhedral(builder, hull))
+}
+
+fn polyhedral(builder: &mut Builder, polyhedron: Polyhedron) -> SolidId {
+    let polyhedron = Arc::new(polyhedron);
+    builder.primitive(Primitive::Polyhedron { polyhedron })
+}
+
+fn plus(a: &SpacePoint, b: &SpacePoint) -> SpacePoint {
+    std::array::from_fn(|i| &a[i] + &b[i])
+}
+
+/// The sum of a polyhedron and the hull of some points: the moved polyhedron, what its faces sweep
+/// along a chord of the hull, and the sums of its edges and the hull.
+///
+/// A point x is in the sum of a plane face F and a convex B if x - B meets F. It meets the plane in a
+/// convex set, which meets the edges of F, or is inside F and meets a chord of x - B that is as high
+/// above the plane as B.
+fn with_convex(
+    builder: &mut Builder,
+    placed: &PlacedPrimitive,
+    convex: &[SpacePoint],
+) -> Result<SolidId, ConstructionError> {
+    own_corners(&placed.primitive).ok_or(ConstructionError::NoSum)?;
+    let motion = &placed.motion;
+    let solid = polyhedron(&placed.primitive)?;
+    let solid = solid.mapped(&motion.rotation_matrix(), motion.offset())?;
+    if solid.faces().len().saturating_mul(convex.len()) > MAX_PAIRS {
+        return Err(ConstructionError::NoSum);
+    }
+    let whole = polyhedral(builder, solid.clone());
+    let mut parts = vec![builder.moved(whole, Transform::shift(convex[0].clone()))];
+    for face in 0..solid.faces().len() {
+        let normal = solid.normal(face);
+        let height = |p: &&SpacePoint| dot(&normal, p);
+        let ends = [
+            convex.iter().min_by_key(height),
+            convex.iter().max_by_key(height),
+        ];
+        if let [Some(low), Some(high)] = ends {
+            let swept = swept_face(&solid, face, [low, high])?;
+            parts.push(polyhedral(builder, swept));
+        }
+    }
+    for [i, j] in solid.faces().iter().flat_map(|face| face.edges()) {
+        if i < j {
+            let ends = [i, j].map(|k| solid.points()[k].clone());
+            parts.push(hull_of_sums(builder, &ends, convex)?);
+        }
+    }
+    Ok(builder.operation(Operation::Union, &parts))
 }
 
 /// The corners of a convex primitive with plane faces.

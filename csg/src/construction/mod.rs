@@ -4,6 +4,7 @@
 //! | module | what it gives |
 //! | --- | --- |
 //! | `leaves` | the placed primitives of a union, their corners and their columns |
+//! | `evaluated` | the exact boundary of solids with plane faces |
 //! | `frames` | rotations along given directions |
 //! | `hull` | convex hulls |
 //! | `tapered_hull` | hulls of plates with rounded corners about common axes |
@@ -14,6 +15,7 @@
 //! | `projection` | sections with the plane z = 0, and shadows on it |
 
 mod affine;
+mod evaluated;
 mod extent;
 mod frames;
 mod hull;

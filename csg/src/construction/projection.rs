@@ -1,18 +1,21 @@
 //! Sections of solids with the plane z = 0, and their shadows on it.
 
+use std::collections::BTreeMap;
+
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::ConstructionError;
+use super::evaluated::PlaneFacedBoundary;
 use super::frames::root;
-use super::leaves::{column, corners, own_corners, polyhedron};
+use super::leaves::{Column, column, corners, own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{
     Disc, Figure, FigureEdge, FigureError, FigureExpression, FigureOperation, PlaneMap,
 };
-use crate::polyhedron::{Polyhedron, SpacePoint};
+use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint, normal_of};
 use crate::primitive::Primitive;
-use crate::tree::{Operation, PlacedPrimitive, Tree, TreeNode};
+use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
 
 /// The section of a solid with the plane z = 0, just above it.
 ///
@@ -191,65 +194,73 @@ fn section_of_polyhedron(polyhedron: &Polyhedron) -> Result<Figure, FigureError>
 /// The shadow of a solid on the plane z = 0, by light along z.
 ///
 /// # Errors
-/// The solid is empty, the shadow has other edges than segments and arcs, or the solid is a
-/// difference other than of columns from a column that they pass through.
+/// The solid is empty, or the shadow of a part of it is not known: of a primitive with other edges
+/// than segments and arcs, or of a difference or an intersection of solids that are not columns and
+/// have other than plane faces.
 pub fn shadow(builder: &Builder, solid: SolidId) -> Result<Figure, ConstructionError> {
     let tree = builder.finish(solid)?;
-    let mut figures: Vec<Option<Figure>> = vec![None; tree.nodes().len()];
-    for (index, node) in tree.nodes().iter().enumerate().rev() {
-        figures[index] = match node {
-            TreeNode::Leaf(placed) => match shadow_of(placed) {
-                Err(ConstructionError::NoProjection(_)) => None,
-                made => Some(made?),
-            },
+    let unknown = || ConstructionError::NoProjection("shadow");
+    let mut open: Vec<NodeId> = tree.root().into_iter().collect();
+    let mut figures: Vec<Figure> = Vec::new();
+    while let Some(id) = open.pop() {
+        let shadow = match &tree[id] {
+            TreeNode::Leaf(placed) => shadow_of(placed),
+            TreeNode::Operation {
+                op: Operation::Union,
+                children,
+            } => {
+                open.extend(children.iter().rev());
+                continue;
+            }
             TreeNode::Operation { op, children } => {
-                let each: Vec<usize> = children.iter().map(|c| c.index()).collect();
-                combined_shadow(&tree, *op, &each, &figures)?
+                match shadow_of_columns(&tree, *op, children).transpose() {
+                    Some(figure) => figure,
+                    None => match PlaneFacedBoundary::of_tree(&tree.subtree(id))? {
+                        Some(boundary) => shadow_of_faces(&boundary.points, &boundary.faces),
+                        None => Err(unknown()),
+                    },
+                }
             }
         };
+        figures.extend(non_empty(shadow)?);
     }
-    let root = tree.root().ok_or(FigureError::Empty)?;
-    let shadow = figures[root.index()].take();
-    shadow.ok_or(ConstructionError::NoProjection("shadow"))
+    let figures: Vec<&Figure> = figures.iter().collect();
+    match figures[..] {
+        [] => Err(FigureError::Empty.into()),
+        [single] => Ok(single.clone()),
+        _ => Ok(Figure::combined(FigureOperation::Union, &figures)?),
+    }
 }
 
-/// The shadow of an operation; `None` if it is not known.
-fn combined_shadow(
+/// The shadow of an intersection or a difference of columns of which the first is the shortest;
+/// `None` if the operands are others.
+fn shadow_of_columns(
     tree: &Tree,
     op: Operation,
-    children: &[usize],
-    figures: &[Option<Figure>],
+    children: &[NodeId],
 ) -> Result<Option<Figure>, ConstructionError> {
-    let each = children.iter().map(|&c| figures[c].as_ref());
-    let Some(each) = each.collect::<Option<Vec<&Figure>>>() else {
+    let columns = children.iter().map(|&c| match &tree[c] {
+        TreeNode::Leaf(placed) => column(placed, &Motion::identity()),
+        TreeNode::Operation { .. } => None,
+    });
+    let Some(columns) = columns.collect::<Option<Vec<Column>>>() else {
         return Ok(None);
     };
+    let [first, others @ ..] = &columns[..] else {
+        return Ok(None);
+    };
+    let passes =
+        |other: &Column| other.range[0] <= first.range[0] && first.range[1] <= other.range[1];
+    if !others.iter().all(passes) {
+        return Ok(None);
+    }
     let op = match op {
         Operation::Union => FigureOperation::Union,
-        Operation::Intersection | Operation::Difference => {
-            let columns = children.iter().map(|&c| match &tree.nodes()[c] {
-                TreeNode::Leaf(placed) => column(placed, &Motion::identity()),
-                TreeNode::Operation { .. } => None,
-            });
-            let Some(columns) = columns.collect::<Option<Vec<_>>>() else {
-                return Ok(None);
-            };
-            let [first, others @ ..] = &columns[..] else {
-                return Ok(None);
-            };
-            let passes = |other: &super::leaves::Column| {
-                other.range[0] <= first.range[0] && first.range[1] <= other.range[1]
-            };
-            if !others.iter().all(passes) {
-                return Ok(None);
-            }
-            match op {
-                Operation::Intersection => FigureOperation::Intersection,
-                _ => FigureOperation::Difference,
-            }
-        }
+        Operation::Intersection => FigureOperation::Intersection,
+        Operation::Difference => FigureOperation::Difference,
     };
-    Ok(Some(Figure::combined(op, &each)?))
+    let figures: Vec<&Figure> = columns.iter().map(|column| &column.figure).collect();
+    Ok(Some(Figure::combined(op, &figures)?))
 }
 
 /// The shadow of a primitive.
@@ -280,25 +291,38 @@ fn shadow_of(placed: &PlacedPrimitive) -> Result<Figure, ConstructionError> {
             Ok(Figure::convex_hull(&points.collect::<Vec<_>>())?)
         }
         other => match own_corners(other) {
-            Some(_) => shadow_of_polyhedron(&polyhedron(other)?.mapped(&turn, centre)?),
+            Some(_) => {
+                let solid = polyhedron(other)?.mapped(&turn, centre)?;
+                shadow_of_faces(solid.points(), solid.faces())
+            }
             None => Err(ConstructionError::NoProjection("shadow")),
         },
     }
 }
 
-/// The union of the shadows of all faces that are lit.
-fn shadow_of_polyhedron(polyhedron: &Polyhedron) -> Result<Figure, ConstructionError> {
-    let is_lit = |face: &usize| polyhedron.normal(*face)[2] > Rational::ZERO;
-    let outline = |face: usize| {
-        let loops = polyhedron.faces()[face].loops.iter();
-        let flat = |corners: &Vec<usize>| {
-            let points = corners.iter().map(|&i| &polyhedron.points()[i]);
-            points.map(|[x, y, _]| [x.clone(), y.clone()]).collect()
-        };
-        Figure::polygon(&loops.map(flat).collect::<Vec<_>>())
+/// The shadow of plane faces around a solid: the points about which the outlines of the lit ones
+/// wind. The edges between lit faces cancel.
+fn shadow_of_faces(
+    points: &[SpacePoint],
+    faces: &[PolyhedronFace],
+) -> Result<Figure, ConstructionError> {
+    let is_lit = |face: &&PolyhedronFace| {
+        let [_, _, z] = normal_of(face, |i| &points[i]);
+        z > Rational::ZERO
     };
-    let lit = (0..polyhedron.faces().len()).filter(is_lit);
-    let faces: Vec<Figure> = lit.map(outline).collect::<Result<_, _>>()?;
-    let faces: Vec<&Figure> = faces.iter().collect();
-    Ok(Figure::combined(FigureOperation::Union, &faces)?)
+    let mut senses: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+    for [i, j] in faces.iter().filter(is_lit).flat_map(|face| face.edges()) {
+        let sense = if i < j { 1 } else { -1 };
+        *senses.entry([i.min(j), i.max(j)]).or_default() += sense;
+    }
+    let flat = |i: usize| [0, 1].map(|k| points[i][k].clone());
+    let mut outline = Vec::new();
+    for ([i, j], sense) in senses {
+        let segment = match sense > 0 {
+            true => [flat(i), flat(j)],
+            false => [flat(j), flat(i)],
+        };
+        outline.extend((0..sense.abs()).map(|_| segment.clone()));
+    }
+    Ok(Figure::wound(&outline)?)
 }

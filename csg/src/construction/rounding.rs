@@ -6,7 +6,7 @@ use std::sync::Arc;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
-use super::leaves::{corners, own_corners};
+use super::leaves::{own_corners, polyhedron, swept_face};
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{
@@ -44,38 +44,37 @@ pub(super) fn rounded_hull(
     radius: &Rational,
 ) -> Result<SolidId, ConstructionError> {
     match Polyhedron::convex_hull(centres) {
-        Ok(hull) => rounded_polytope(builder, &hull, radius),
+        Ok(hull) => rounded_polyhedron(builder, &hull, radius),
         Err(PolyhedronError::Empty) => rounded_polygon(builder, centres, radius),
         Err(error) => Err(error.into()),
     }
 }
 
-/// The sum of a convex polyhedron and a ball.
-fn rounded_polytope(
+/// The sum of a polyhedron and a ball.
+fn rounded_polyhedron(
     builder: &mut Builder,
-    polytope: &Polyhedron,
+    polyhedron: &Polyhedron,
     radius: &Rational,
 ) -> Result<SolidId, ConstructionError> {
     let primitive = |polyhedron: Polyhedron| Primitive::Polyhedron {
         polyhedron: Arc::new(polyhedron),
     };
-    let mut parts = vec![builder.primitive(primitive(polytope.clone()))];
-    for face in 0..polytope.faces().len() {
-        let outline: Vec<SpacePoint> = polytope.corners(face).cloned().collect();
-        let slab = slab(
-            &outline,
-            &polytope.normal(face),
-            &[Rational::ZERO, radius.clone()],
-        )?;
+    let mut parts = vec![builder.primitive(primitive(polyhedron.clone()))];
+    let zero: SpacePoint = std::array::from_fn(|_| Rational::ZERO);
+    for face in 0..polyhedron.faces().len() {
+        let normal = polyhedron.normal(face);
+        let length = frames::length(&normal);
+        let up = normal.map(|x| x * radius / &length);
+        let slab = swept_face(polyhedron, face, [&zero, &up])?;
         parts.push(builder.primitive(primitive(slab)));
     }
-    for [i, j] in polytope.faces().iter().flat_map(|face| face.edges()) {
+    for [i, j] in polyhedron.faces().iter().flat_map(|face| face.edges()) {
         if i < j {
-            let ends = [i, j].map(|k| &polytope.points()[k]);
+            let ends = [i, j].map(|k| &polyhedron.points()[k]);
             parts.push(tube(builder, ends, radius)?);
         }
     }
-    for corner in polytope.points() {
+    for corner in polyhedron.points() {
         parts.push(ball(builder, corner, radius)?);
     }
     Ok(builder.operation(Operation::Union, &parts))
@@ -176,15 +175,9 @@ pub(super) fn rounded(
             Ok(back(builder, part))
         }
         other => {
-            let own = own_corners(other).ok_or(ConstructionError::NoSum)?;
-            let hull = Polyhedron::convex_hull(&own)?;
-            if let Primitive::Polyhedron { polyhedron } = other
-                && polyhedron.sixfold_volume() != hull.sixfold_volume()
-            {
-                return Err(ConstructionError::NoSum);
-            }
-            let points = corners(placed).ok_or(ConstructionError::NoSum)?;
-            rounded_hull(builder, &points, radius)
+            own_corners(other).ok_or(ConstructionError::NoSum)?;
+            let part = rounded_polyhedron(builder, &*polyhedron(other)?, radius)?;
+            Ok(back(builder, part))
         }
     }
 }

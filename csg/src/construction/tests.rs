@@ -257,6 +257,86 @@ fn sections_and_shadows() {
     close(shadow(&b, low).unwrap().area(), 12.0);
 }
 
+/// A block of 4 by 4 by 4 without a corner of 2 by 2 by 2.
+fn notched(b: &mut Builder) -> SolidId {
+    let [whole, corner] = [4, 2].map(|size| block(b, [size; 3]));
+    let corner = b.moved(corner, Transform::shift([2; 3].map(n)));
+    b.operation(Operation::Difference, &[whole, corner])
+}
+
+#[test]
+fn differences_with_plane_faces_are_polyhedra() {
+    for degrees in [0, 30] {
+        let mut b = Builder::new();
+        let part = notched(&mut b);
+        let part = turned(&mut b, part, degrees);
+        let hull = convex_hull(&mut b, &[part], 0.0).unwrap().solid;
+        assert_eq!(check(&b, hull, 64.0 - 4.0 / 3.0), ["plane"]);
+        // The notch is smaller by the block, and so its mouth is as wide as before.
+        let unit = block(&mut b, [1; 3]);
+        let unit = turned(&mut b, unit, degrees);
+        let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
+        assert_eq!(check(&b, sum, 125.0 - 8.0), ["plane"]);
+    }
+}
+
+/// A bracket as a difference of blocks has the same sum with a ball as its figure, extruded.
+#[test]
+fn a_difference_is_rounded() {
+    let corners = [[0, 0], [6, 0], [6, 2], [2, 2], [2, 6], [0, 6]].map(|p| p.map(n));
+    let figure = Figure::polygon(&[corners.to_vec()]).unwrap();
+    let mut b = Builder::new();
+    let prism = b.primitive(Primitive::prism(figure, n(3)).unwrap());
+    let [whole, rest] = [[6, 6, 3], [5, 5, 5]].map(|size| block(&mut b, size));
+    let rest = b.moved(rest, Transform::shift([2, 2, -1].map(n)));
+    let bracket = b.operation(Operation::Difference, &[whole, rest]);
+    let unit = ball(&mut b, 1, [0, 0, 0]);
+    let [expected, sum] = [prism, bracket].map(|part| {
+        let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
+        evaluate(&b.finish(sum).unwrap(), &EvaluationOptions::default()).unwrap()
+    });
+    let (expected, volume) = (expected.mass().volume, sum.mass().volume);
+    assert!((volume - expected).abs() < 1e-10, "{volume} {expected}");
+}
+
+/// Through the window of a tilted plate less is seen than its size.
+#[test]
+fn the_shadow_of_a_window() {
+    let mut b = Builder::new();
+    let [plate, window] = [[4, 4, 1], [2, 2, 3]].map(|size| block(&mut b, size));
+    let window = b.moved(window, Transform::shift([1, 1, -1].map(n)));
+    let part = b.operation(Operation::Difference, &[plate, window]);
+    for degrees in [0, 20, 45] {
+        let mut moves = Transform::new();
+        let (axis, turn) = ([n(1), n(0), n(0)], n(degrees));
+        moves
+            .push(TransformStep::Turn {
+                axis,
+                degrees: turn,
+            })
+            .unwrap();
+        let tilted = b.moved(part, moves);
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        let area = 4.0 * (4.0 * cos + sin) - 2.0 * (2.0 * cos - sin);
+        let found = shadow(&b, tilted).unwrap().area();
+        assert!((found - area).abs() < 1e-12 * area, "{found} {area}");
+    }
+    // From an angle whose tangent is 2 nothing is seen through it.
+    let mut moves = Transform::new();
+    let (axis, turn) = ([n(1), n(0), n(0)], n(70));
+    moves
+        .push(TransformStep::Turn {
+            axis,
+            degrees: turn,
+        })
+        .unwrap();
+    let tilted = b.moved(part, moves);
+    let (sin, cos) = 70f64.to_radians().sin_cos();
+    let (found, area) = (shadow(&b, tilted).unwrap(), 4.0 * (4.0 * cos + sin));
+    assert!((found.area() - area).abs() < 1e-12 * area);
+    assert_eq!(found.edges().len(), 4);
+}
+
 /// A plate whose outline is an offset of a rectangle of 8 by 4.
 fn rounded_plate(b: &mut Builder, radius: i32, height: i32, z: i32) -> SolidId {
     let core = Figure::rectangle(&[8, 4].map(n)).unwrap();

@@ -22,6 +22,7 @@ mod scalar;
 mod set_operations;
 mod straightened;
 mod stroke;
+mod winding;
 mod wrapping;
 
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};

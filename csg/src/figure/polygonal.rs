@@ -74,7 +74,7 @@ impl Line {
     }
 
     /// The axis along which it extends.
-    fn axis(&self) -> usize {
+    pub fn axis(&self) -> usize {
         usize::from(self.start.compare(&self.end, 0) == Ordering::Equal)
     }
 
@@ -102,7 +102,17 @@ impl Line {
             && orientation(&self.start, &self.end, p) == Ordering::Equal
     }
 
-    fn bounds(&self) -> [[f64; 2]; 2] {
+    /// It as an edge of a figure, in its direction or in the opposite one.
+    pub fn edge(&self, is_along: bool) -> FigureEdge {
+        let [s, e] = [&self.start.exact, &self.end.exact];
+        let edge = FigureEdge::line(s.clone(), e.clone());
+        match is_along {
+            true => edge,
+            false => edge.reversed(),
+        }
+    }
+
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
         let [s, e] = [self.start.near(), self.end.near()];
         [
             [s[0].min(e[0]), s[1].min(e[1])],
@@ -110,8 +120,27 @@ impl Line {
         ]
     }
 
+    /// The axis of a ray from its middle that leaves it: x, or y if it runs along x.
+    pub fn ray_axis(&self) -> usize {
+        usize::from(self.start.compare(&self.end, 1) == Ordering::Equal)
+    }
+
+    pub fn middle(&self) -> FilteredPoint {
+        let half = Rational::ONE / Rational::from(2);
+        let [s, e] = [&self.start.exact, &self.end.exact];
+        FilteredPoint::new(&[0, 1].map(|i| (&s[i] + &e[i]) * &half))
+    }
+
+    /// Whether its left side is the one to which the ray from its middle runs.
+    pub fn is_left_along_ray(&self) -> bool {
+        let axis = self.ray_axis();
+        let rises = self.start.compare(&self.end, 1 - axis) == Ordering::Less;
+        // To the right of a rising segment is +x; to the left of one along +x is +y.
+        rises == (axis == 1)
+    }
+
     /// Whether the ray from `p` in the direction of an axis crosses the segment.
-    fn is_crossed_from(&self, p: &FilteredPoint, axis: usize) -> bool {
+    pub fn is_crossed_from(&self, p: &FilteredPoint, axis: usize) -> bool {
         let across = 1 - axis;
         let is_above = |q: &FilteredPoint| q.compare(p, across) == Ordering::Greater;
         let [from, to] = [is_above(&self.start), is_above(&self.end)];
@@ -223,21 +252,48 @@ fn homes(contours: &[Vec<FigureEdge>]) -> Vec<Home> {
 /// Whether the region on the left of a segment is inside an odd number of polygons.
 fn has_material_on_the_left(lines: &[Line], index: usize) -> bool {
     let line = &lines[index];
-    // A ray along x, or along y from a segment along x.
-    let axis = usize::from(line.start.compare(&line.end, 1) == Ordering::Equal);
-    let half = Rational::ONE / Rational::from(2);
-    let [s, e] = [&line.start.exact, &line.end.exact];
-    let middle = FilteredPoint::new(&[0, 1].map(|i| (&s[i] + &e[i]) * &half));
+    let (axis, middle) = (line.ray_axis(), line.middle());
     let others = lines.iter().enumerate().filter(|(i, _)| *i != index);
     let crossed = others.filter(|(_, other)| other.is_crossed_from(&middle, axis));
     let is_odd = crossed.count() % 2 == 1;
-    let rises = line.start.compare(&line.end, 1 - axis) == Ordering::Less;
-    // To the right of a rising segment is +x; to the left of one along +x is +y.
-    is_odd == (rises == (axis == 1))
+    is_odd == line.is_left_along_ray()
 }
 
 /// The region of segments that cross or overlap.
 fn split(lines: &[Line], pairs: &[[usize; 2]]) -> Figure {
+    let pieces = pieces(lines, pairs);
+    let odd = pieces.chunk_by(|a, b| a.ends == b.ends);
+    let odd = odd.filter(|same| same.len() % 2 == 1).map(|same| &same[0]);
+    let kept: Vec<Line> = odd.map(|piece| piece.line(Ordering::Greater)).collect();
+    let edge = |i: usize| kept[i].edge(has_material_on_the_left(&kept, i));
+    of_pieces((0..kept.len()).map(edge).collect())
+}
+
+/// A piece between consecutive points of a segment.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct LinePiece {
+    /// Its ends in increasing order.
+    pub ends: [FilteredPoint; 2],
+    /// Whether the segment runs from the first end to the second one.
+    pub is_along: bool,
+}
+
+impl LinePiece {
+    /// The piece in its order, or with `Less` in the opposite one.
+    pub fn line(&self, sense: Ordering) -> Line {
+        let [start, end] = self.ends.clone();
+        match sense {
+            Ordering::Less => Line {
+                start: end,
+                end: start,
+            },
+            _ => Line { start, end },
+        }
+    }
+}
+
+/// The pieces into which segments divide each other, equal ones next to each other.
+pub(super) fn pieces(lines: &[Line], pairs: &[[usize; 2]]) -> Vec<LinePiece> {
     let mut points: Vec<Vec<FilteredPoint>> = lines
         .iter()
         .map(|line| vec![line.start.clone(), line.end.clone()])
@@ -255,35 +311,28 @@ fn split(lines: &[Line], pairs: &[[usize; 2]]) -> Figure {
             points[index].extend(inside.cloned());
         }
     }
-    let mut pieces: Vec<[FilteredPoint; 2]> = Vec::new();
+    let mut pieces = Vec::new();
     for (line, mut on) in lines.iter().zip(points) {
         let axis = line.axis();
         on.sort_by(|a, b| a.compare(b, axis));
         on.dedup_by(|a, b| a.is_at(b));
-        pieces.extend(on.windows(2).map(|ends| [ends[0].clone(), ends[1].clone()]));
+        let is_along = line.ordered()[0].is_at(&line.start);
+        pieces.extend(on.windows(2).map(|ends| LinePiece {
+            ends: [ends[0].clone(), ends[1].clone()],
+            is_along,
+        }));
     }
     pieces.sort();
-    let odd = pieces.chunk_by(|a, b| a == b);
-    let odd = odd.filter(|same| same.len() % 2 == 1).map(|same| &same[0]);
-    let kept: Vec<Line> = odd
-        .map(|[start, end]| Line {
-            start: start.clone(),
-            end: end.clone(),
-        })
-        .collect();
-    let edge = |i: usize| {
-        let [s, e] = [&kept[i].start.exact, &kept[i].end.exact];
-        let edge = FigureEdge::line(s.clone(), e.clone());
-        match has_material_on_the_left(&kept, i) {
-            true => edge,
-            false => edge.reversed(),
-        }
-    };
+    pieces
+}
+
+/// The figure of directed pieces, with the material on their left.
+pub(super) fn of_pieces(edges: Vec<FigureEdge>) -> Figure {
     let mut figure = Figure {
         edges: Vec::new(),
         contours: Vec::new(),
     };
-    for contour in chained((0..kept.len()).map(edge).collect()) {
+    for contour in chained(edges) {
         figure.contours.push(figure.edges.len());
         figure.edges.extend(joined(contour));
     }

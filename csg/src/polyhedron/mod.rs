@@ -315,7 +315,10 @@ fn sixfold_volume_of<'a>(
 }
 
 /// The outward normal of a face, of any length.
-fn normal_of<'a>(face: &PolyhedronFace, point: impl Fn(usize) -> &'a SpacePoint) -> SpacePoint {
+pub(crate) fn normal_of<'a>(
+    face: &PolyhedronFace,
+    point: impl Fn(usize) -> &'a SpacePoint,
+) -> SpacePoint {
     let normals = face
         .loops
         .iter()

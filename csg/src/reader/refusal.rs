@@ -16,14 +16,14 @@ pub(super) fn invalid_polyhedron(error: &PolyhedronError, span: &Range<usize>) -
 /// The error of a construction without an exact result.
 pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>) -> SpannedError {
     let expected = match error {
-        ConstructionError::NotUnion(_) => "a union of shapes",
+        ConstructionError::NotUnion(_) => "a union of shapes, or shapes with plane faces",
         ConstructionError::NoHull => {
             "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and \
              prisms between the same two planes"
         }
         ConstructionError::NoSum => {
-            "a ball with any shape, prisms and cylinders of one direction, or convex shapes with \
-             plane faces"
+            "a ball with any shape, prisms and cylinders of one direction, or shapes with plane \
+             faces of which one is convex"
         }
         ConstructionError::Elliptic => {
             "a scale along the axis of a cylinder, equal in all directions, or of plane faces"

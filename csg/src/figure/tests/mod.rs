@@ -155,6 +155,39 @@ proptest! {
         }
         prop_assert!(figure.area() > 0.0);
     }
+
+    /// Triangles that run counterclockwise have their union about them, those that run clockwise
+    /// take as much away as others add.
+    #[test]
+    fn winding_numbers_of_random_triangles(
+        triangles in prop::collection::vec(prop::array::uniform3(prop::array::uniform2(0i32..8)), 1..7),
+    ) {
+        let sides = |corners: &[[i32; 2]; 3]| [0, 1, 2].map(|k| [corners[k], corners[(k + 1) % 3]]);
+        let all: Vec<[[i32; 2]; 2]> = triangles.iter().flat_map(sides).collect();
+        let segments: Vec<[FigurePoint; 2]> = all
+            .iter()
+            .map(|[p, q]| [p, q].map(|p| p.map(Rational::from)))
+            .collect();
+        let figure = Figure::wound(&segments).ok();
+        for x in (1..32).step_by(2) {
+            for y in (1..32).step_by(2) {
+                let at = [x, y];
+                let on = all.iter().any(|[p, q]| {
+                    let ([px, py], [qx, qy]) = (p.map(|x| 4 * x), q.map(|x| 4 * x));
+                    (qx - px) * (y - py) == (qy - py) * (x - px)
+                });
+                if on {
+                    continue;
+                }
+                let windings = triangles.iter().map(|corners| {
+                    shoelace(corners).signum() * (crossed(corners, at) % 2) as i64
+                });
+                let is_about = windings.sum::<i64>() > 0;
+                let is_in = figure.as_ref().is_some_and(|figure| contains(figure, at));
+                prop_assert_eq!(is_in, is_about);
+            }
+        }
+    }
 }
 
 #[test]

@@ -73,6 +73,15 @@ pub enum EvaluationError {
         /// The approximate location.
         place: [f64; 3],
     },
+    /// The faces of a polyhedron cross each other.
+    #[error(
+        "faces of a polyhedron cross each other near ({:.6}, {:.6}, {:.6}): faces may touch at common edges and corners only",
+        place[0], place[1], place[2]
+    )]
+    SelfIntersection {
+        /// The rounded location.
+        place: [f64; 3],
+    },
     /// The description's numbers are too large or too small for f64.
     #[error("the part's size is beyond the range of lengths from 1e-50 to 1e50")]
     Size,
@@ -134,7 +143,10 @@ impl EvaluationError {
             | Self::NearCylinder { .. }
             | Self::UnprovenCoincidence { .. }
             | Self::Resolution { .. } => true,
-            Self::Size | Self::TooFarFromOrigin { .. } | Self::EntityLimit { .. } => false,
+            Self::SelfIntersection { .. }
+            | Self::Size
+            | Self::TooFarFromOrigin { .. }
+            | Self::EntityLimit { .. } => false,
         }
     }
 }

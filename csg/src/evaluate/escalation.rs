@@ -3,7 +3,7 @@
 use super::evaluation::{Evaluated, Evaluation};
 use super::halfspaces::HalfSpaceModel;
 use super::settings::Settings;
-use super::{Arithmetic, EvaluationError, evaluated, vanished};
+use super::{Arithmetic, EvaluationError, evaluated, fine_facets, vanished};
 use crate::tree::Tree;
 use premio_kernel::brep::face_integrals::Mass;
 use premio_kernel::number::double_double::F106;
@@ -59,16 +59,21 @@ pub(super) fn evaluate_component(
 
 /// Evaluates in f64, and where that is inconclusive, in more and more bits.
 fn by_resolution(tree: &Tree, settings: &Settings) -> Result<Evaluation, EvaluationError> {
-    let error = match in_f64(tree, settings) {
+    let noiseless = settings.without_noise();
+    // Merging within the noise contradicts itself where surfaces meet at small angles.
+    let [first, second] = match is_finer_than_noise(tree, settings) {
+        true => [&noiseless, settings],
+        false => [settings, &noiseless],
+    };
+    let error = match in_f64(tree, first) {
         Err(error) if error.is_of_rounding() => error,
         known => return known,
     };
-    // Merging within the noise contradicts itself where surfaces meet at small angles.
     let is_noisy = settings.noise.is_above_zero();
-    let settings = &settings.without_noise();
-    if let Some(Ok(known)) = is_noisy.then(|| in_f64(tree, settings)) {
+    if let Some(Ok(known)) = is_noisy.then(|| in_f64(tree, second)) {
         return Ok(known);
     }
+    let settings = &noiseless;
     let error = match may_succeed_in_more_bits(&error, tree, MAX_PRIMITIVES_IN_106_BITS) {
         true => match evaluated_in_more_bits::<F106>(tree, settings) {
             Ok(known) => return Ok(known.into()),
@@ -80,6 +85,12 @@ fn by_resolution(tree: &Tree, settings: &Settings) -> Result<Evaluation, Evaluat
         true => evaluated_in_more_bits::<F237>(tree, settings).map(Evaluation::from),
         false => Err(error),
     }
+}
+
+/// Whether the facets of a polyhedron are closer to each other than the noise of the coordinates.
+fn is_finer_than_noise(tree: &Tree, settings: &Settings) -> bool {
+    let noise = settings.noise * settings.size;
+    noise.is_above_zero() && settings.requested.is_none() && fine_facets::are_within(tree, noise)
 }
 
 /// Evaluates in f64.

@@ -9,6 +9,7 @@
 //! | `components` | the components that are apart; each passes the stages below separately |
 //! | `concurrency` | a parallel map over them |
 //! | `escalation` | f64, and more bits where fewer are inconclusive |
+//! | `fine_facets` | finds polyhedra whose facets are closer than the noise of the coordinates |
 //! | `near_cylinders` | refuses frustums that are nearly cylinders |
 //! | `vanished` | drops primitives thinner than the resolution |
 //! | `walls` | the surfaces that the edges of a figure sweep |
@@ -20,6 +21,7 @@
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
+//! | `facet_joints` | the corners and edges of polyhedra, which are known from the start |
 //! | `wall_joints` | moves a curve of contact to the end of the walls that meet there |
 //! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
 //! | `split_curves` | the common points of curves and carriers |
@@ -55,6 +57,7 @@ mod face_hulls;
 mod face_verification;
 mod facet_joints;
 mod facets;
+mod fine_facets;
 mod halfspaces;
 mod incidence_proof;
 mod incident_walls;
@@ -87,6 +90,7 @@ use self::membership::Membership;
 use self::relevance::CloseCallFilter;
 use self::result_boxes::ResultBoxes;
 use self::settings::Settings;
+use crate::primitive::Primitive;
 use crate::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
@@ -96,6 +100,7 @@ use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{CoincidencePolicy, Compare, Predicates};
+use premio_kernel::number::rational::to_f64;
 
 /// How a tree is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -153,10 +158,26 @@ pub fn evaluate(tree: &Tree, options: &EvaluationOptions) -> Result<Evaluation, 
     }
     let settings = Settings::new(options, vast.unwrap_or(whole));
     let trees = settings.gap().and_then(|gap| components(tree, &boxes, gap));
-    match trees {
-        Some(trees) => Ok(Evaluation::joined(separately(&trees, &settings)?)),
+    let known = match trees {
+        Some(trees) => separately(&trees, &settings).map(Evaluation::joined),
         None => evaluate_component(tree, vast.is_some(), &settings),
-    }
+    };
+    known.map_err(|error| match error.is_of_rounding() {
+        true => self_intersection(tree).unwrap_or(error),
+        false => error,
+    })
+}
+
+/// The error of a polyhedron whose faces cross each other, if there is one.
+fn self_intersection(tree: &Tree) -> Option<EvaluationError> {
+    tree.leaves().find_map(|(_, placed)| {
+        let Primitive::Polyhedron { polyhedron } = &placed.primitive else {
+            return None;
+        };
+        let place = placed.motion.apply_point(&polyhedron.crossing()?);
+        let place = place.each_ref().map(to_f64);
+        Some(EvaluationError::SelfIntersection { place })
+    })
 }
 
 /// The number of surfaces from which the components of a part have threads of their own.

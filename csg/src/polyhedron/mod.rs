@@ -2,6 +2,7 @@
 
 mod convex_hull;
 mod coplanar;
+mod crossing;
 mod neighbours;
 mod orientation;
 mod shells;

@@ -54,7 +54,7 @@ impl Polyhedron {
 }
 
 /// Three corners of a face that are not in line; of a triangle, in its order.
-fn plane_of(face: &PolyhedronFace, points: &[FilteredPoint]) -> Option<[usize; 3]> {
+pub(super) fn plane_of(face: &PolyhedronFace, points: &[FilteredPoint]) -> Option<[usize; 3]> {
     let [first, second, others @ ..] = &face.loops.first()?[..] else {
         return None;
     };

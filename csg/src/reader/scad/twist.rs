@@ -160,7 +160,6 @@ pub(super) fn twisted(
     is_literal: bool,
     arguments: &Arguments,
 ) -> Result<Polyhedron, SpannedError> {
-    let diagonal = twist.diagonal(is_literal);
     let outlines = polygons(figure, arguments)?;
     let slices = slices(&outlines, height, &twist.degrees, top, arguments)?;
     let corners: usize = outlines.iter().map(Vec::len).sum();
@@ -184,41 +183,73 @@ pub(super) fn twisted(
         outlines.iter().flatten().map(place).collect::<Vec<_>>()
     };
     let rings: Vec<Vec<SpacePoint>> = (0..=slices).map(ring).collect();
-    let count = rings[0].len();
-    let points = rings.concat();
-    let mut faces = Vec::new();
-    let loops = index_loops(outlines.iter().map(Vec::len));
-    let has_flat_top = top.iter().any(Rational::is_zero);
-    for (corners, outline) in loops.iter().zip(&outlines) {
-        let is_hole = is_clockwise(outline);
-        for slice in 0..slices {
-            let is_flat = has_flat_top && slice + 1 == slices;
-            let next = corners.iter().cycle().skip(1);
-            for (&i, &j) in corners.iter().zip(next) {
-                let [a, b] = [i, j].map(|k| k + slice * count);
-                let [d, c] = [a, b].map(|k| k + count);
-                let side = Side {
-                    corners: [a, b, c, d].map(|k| &points[k]),
-                    is_hole,
-                    is_flat,
-                };
-                let triangles = match diagonal.is_downward(&side) {
-                    true => [vec![a, b, c], vec![a, c, d]],
-                    false => [vec![a, b, d], vec![b, c, d]],
-                };
-                faces.extend(triangles.map(PolyhedronFace::simple));
+    let stack = SliceStack {
+        outlines: &outlines,
+        loops: index_loops(outlines.iter().map(Vec::len)),
+        slices,
+        points: rings.concat(),
+        has_flat_top: top.iter().any(Rational::is_zero),
+    };
+    let bad = |error: PolyhedronError| bad_slices(&error, &arguments.span);
+    let made = stack.polyhedron(twist.diagonal(is_literal)).map_err(bad)?;
+    if made.crossing().is_none() {
+        return Ok(made);
+    }
+    // Thin walls between coarse slices cross each other along one diagonal, and not along another.
+    let other = stack.polyhedron(SideDiagonal::Shorter).map_err(bad)?;
+    Ok(match other.crossing() {
+        None => other,
+        Some(_) => made,
+    })
+}
+
+/// Slices above each other.
+struct SliceStack<'a> {
+    /// The contours of the lowest one.
+    outlines: &'a [Vec<FigurePoint>],
+    /// The indices of their corners.
+    loops: Vec<Vec<usize>>,
+    /// The number of steps from one slice to the next.
+    slices: usize,
+    /// The corners of all slices.
+    points: Vec<SpacePoint>,
+    /// Whether the highest slice has no width.
+    has_flat_top: bool,
+}
+
+impl SliceStack<'_> {
+    /// The polyhedron with the sides cut along a diagonal.
+    fn polyhedron(&self, diagonal: SideDiagonal) -> Result<Polyhedron, PolyhedronError> {
+        let (slices, count) = (self.slices, self.points.len() / (self.slices + 1));
+        let mut faces = Vec::new();
+        for (corners, outline) in self.loops.iter().zip(self.outlines) {
+            let is_hole = is_clockwise(outline);
+            for slice in 0..slices {
+                let is_flat = self.has_flat_top && slice + 1 == slices;
+                let next = corners.iter().cycle().skip(1);
+                for (&i, &j) in corners.iter().zip(next) {
+                    let [a, b] = [i, j].map(|k| k + slice * count);
+                    let [d, c] = [a, b].map(|k| k + count);
+                    let side = Side {
+                        corners: [a, b, c, d].map(|k| &self.points[k]),
+                        is_hole,
+                        is_flat,
+                    };
+                    let triangles = match diagonal.is_downward(&side) {
+                        true => [vec![a, b, c], vec![a, c, d]],
+                        false => [vec![a, b, d], vec![b, c, d]],
+                    };
+                    faces.extend(triangles.map(PolyhedronFace::simple));
+                }
             }
         }
+        let backwards = |corners: &Vec<usize>| corners.iter().rev().copied().collect();
+        let base = self.loops.iter().map(backwards).collect();
+        let up = |corners: &Vec<usize>| corners.iter().map(|i| i + count * slices).collect();
+        let lid = self.loops.iter().map(up).collect();
+        faces.extend([base, lid].map(|loops| PolyhedronFace { loops }));
+        Ok(Polyhedron::from_faces(&self.points, &faces)?.polyhedron)
     }
-    let backwards = |corners: &Vec<usize>| corners.iter().rev().copied().collect();
-    let base = loops.iter().map(backwards).collect();
-    let up = |corners: &Vec<usize>| corners.iter().map(|i| i + count * slices).collect();
-    let lid = loops.iter().map(up).collect();
-    faces.extend([base, lid].map(|loops| PolyhedronFace { loops }));
-    let made = Polyhedron::from_faces(&points, &faces);
-    Ok(made
-        .map_err(|error| bad_slices(&error, &arguments.span))?
-        .polyhedron)
 }
 
 /// The polyhedron of a revolution with flat sides, by an angle in degrees or a whole turn. A whole

@@ -9,7 +9,7 @@ use super::close_calls::{Between, Unlisted};
 use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
 use super::face_hulls::FaceHull;
-use super::facet_joints::FacetJoints;
+use super::facet_joints::{FacetJoints, PlanePair};
 use super::halfspaces::HalfSpaceModel;
 use super::split_curves::Later;
 use super::vertices::{CornerIndex, VertexMerger};
@@ -19,6 +19,7 @@ use premio_kernel::geometry::bounds::{Aabb, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, intersect};
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
+use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::geometry::trace::BranchPosition;
 use premio_kernel::geometry::vector::Length;
@@ -66,8 +67,21 @@ pub(super) fn arrange<'t, N: Float>(
         facets: FacetJoints::new(solids, &found.sides, &mut corners, predicates),
     };
     for (pair, supports) in found.pairs(solids, reach, most)? {
-        let intersected =
-            found.intersected(pair, &sources, extent, &mut joints, &corners, predicates)?;
+        let line = found.known_line(
+            pair,
+            &supports,
+            extent,
+            &mut joints.facets,
+            &corners,
+            predicates,
+        );
+        let intersected = match line {
+            Some(line) => SurfaceIntersection {
+                branches: vec![line],
+                ..SurfaceIntersection::default()
+            },
+            None => found.intersected(pair, &sources, extent, &joints.walls, predicates)?,
+        };
         let kept = found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
         found.cut_at_corners(kept, joints.facets.corners(pair), &corners, predicates);
         bounded(found.meetings.len(), most)?;
@@ -223,35 +237,47 @@ impl<N: Float> Arrangement<N> {
         added
     }
 
+    /// The line of two planes through corners of polyhedra, if it is known better so.
+    fn known_line(
+        &self,
+        carriers: [usize; 2],
+        supports: &[FacePair<'_>],
+        extent: &RegionOfInterest<N>,
+        joints: &mut FacetJoints,
+        corners: &VertexMerger<N>,
+        predicates: &Predicates,
+    ) -> Option<Branch<N>> {
+        let [Surface::Plane(p), Surface::Plane(q)] = carriers.map(|c| &self.carriers[c]) else {
+            return None;
+        };
+        let faces = supports
+            .iter()
+            .fold(Aabb::EMPTY, |all, s| all.hull(&s.bounds));
+        let pair = PlanePair {
+            carriers,
+            planes: [p, q],
+            faces,
+            extent,
+        };
+        joints.line(&pair, corners, predicates)
+    }
+
     /// The intersection of two carriers, with contacts moved to the joints of walls.
     fn intersected(
         &mut self,
         pair: [usize; 2],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
-        joints: &mut Joints<N>,
-        corners: &VertexMerger<N>,
+        joints: &WallJoints<N>,
         predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, EvaluationError> {
         let surfaces = pair.map(|c| &self.carriers[c]);
-        if let Some(line) = joints
-            .facets
-            .line(pair, surfaces, corners, extent, predicates)
-        {
-            return Ok(SurfaceIntersection {
-                branches: vec![line],
-                ..SurfaceIntersection::default()
-            });
-        }
         let exact = pair.map(|c| move || sources[c].exact());
         let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
         let own = predicates.another();
         let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
         for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
-            if let Some(moved) = joints
-                .walls
-                .contact_at_joint(pair, branch, surfaces, predicates)
-            {
+            if let Some(moved) = joints.contact_at_joint(pair, branch, surfaces, predicates) {
                 *branch = moved;
             }
         }

@@ -322,6 +322,35 @@ mod tests {
         assert_eq!((topology.faces.len(), topology.vertices), (8, 6));
     }
 
+    /// A roof of which two facets meet at an angle of 2e-7 in an edge of 2e-5, in a frame 600 wide.
+    /// Over the whole width neither the ends of the edge nor the normals give its line to within the
+    /// resolution.
+    #[test]
+    fn a_short_edge_between_nearly_coplanar_facets_in_a_wide_part() {
+        const ROOF: &str = "polyhedron(points = [
+            [30.100000000000001, 20.199999999999999, 3.2999999999999998],
+            [30.100015972710203, 20.200012036300464, 3.2999999999999998],
+            [29.236714560971134, 23.007258612566041, 4.4721933854678211],
+            [30.963285568360192, 17.39274121580549, 2.1278071208098481],
+            [32.260758667003884, 22.317496823548531, 2.3794951465475593],
+            [27.468945606720126, 18.706606684636242, 2.3794951465475593],
+            [28.92426068431001, 21.760258770461927, -1.3025242672622017]
+        ], faces = [[2,1,0], [1,3,0], [2,4,1], [4,3,1], [5,2,0], [3,5,0], [6,4,2], [6,3,4], [6,5,3], [6,2,5]]);";
+        let frame = "difference() {
+            multmatrix([[1,0,0,-300],[0,1,0,-300],[0,0,1,-50],[0,0,0,1]]) cube([600, 600, 100]);
+            multmatrix([[1,0,0,-90],[0,1,0,-90],[0,0,1,-60],[0,0,0,1]]) cube([180, 180, 120]);
+        }";
+        let [roof, both] = ["", frame].map(|frame| evaluated(&format!("{ROOF} {frame}")));
+        for known in [&roof, &both] {
+            assert!(known.resolution > 1e-12, "f64 is enough");
+        }
+        // The sum of the determinants of the triangles.
+        assert_relative_eq!(roof.mass().volume, 30.00002, max_relative = 1e-12);
+        let whole = 32_760_000.0 + 30.00002;
+        assert_relative_eq!(both.mass().volume, whole, max_relative = 1e-14);
+        assert_eq!(both.brep.topology.solids.len(), 2);
+    }
+
     /// Pyramids above and below a quadrilateral with one corner h above the plane of the others. One
     /// is cut along a diagonal, the other along the other diagonal: between them lies a tetrahedron
     /// of volume h/6, of which both consist. Their volumes are 1/3 and 1/3 + h/6.

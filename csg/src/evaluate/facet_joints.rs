@@ -11,11 +11,12 @@ use super::halfspaces::{HalfSpaceModel, Solid};
 use super::region::WalledRegion;
 use super::vertices::VertexMerger;
 use nalgebra::Point3;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::curve_surface::lies_on;
 use premio_kernel::geometry::intersect::Branch;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
-use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::surface::{Plane, Surface};
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
@@ -29,6 +30,18 @@ pub(super) struct FacetJoints {
     edges: HashMap<[usize; 2], Vec<usize>>,
     /// The pairs whose line was taken from two corners.
     lines: HashSet<[usize; 2]>,
+}
+
+/// Two planes of which faces come near each other.
+pub(super) struct PlanePair<'a, N: Float> {
+    /// The indices of their carriers, in increasing order.
+    pub carriers: [usize; 2],
+    /// The planes.
+    pub planes: [&'a Plane<N>; 2],
+    /// A box of all points near faces of both.
+    pub faces: Aabb,
+    /// The ball that contains the part.
+    pub extent: &'a RegionOfInterest<N>,
 }
 
 /// A facet close to a curve.
@@ -121,39 +134,45 @@ impl FacetJoints {
         self.corners.get(&pair).map_or(&[], Vec::as_slice)
     }
 
-    /// The line of two planes that meet at a small angle, by two corners on both of them.
+    /// The line of two planes that meet at a small angle, by two corners on both of them. Where the
+    /// corners are close to each other, the normals give its direction.
     pub fn line<N: Float>(
         &mut self,
-        pair: [usize; 2],
-        carriers: [&Surface<N>; 2],
+        pair: &PlanePair<'_, N>,
         corners: &VertexMerger<N>,
-        extent: &RegionOfInterest<N>,
         predicates: &Predicates,
     ) -> Option<Branch<N>> {
-        let [Surface::Plane(p), Surface::Plane(q)] = carriers else {
-            return None;
-        };
-        let sine = p.frame.z.cross(&q.frame.z).length();
-        let (radius, resolution) = (extent.radius, predicates.resolution::<N>());
-        if !sine.is_short_of(N::from_f64(SHALLOW)) || (sine * radius).is_within(resolution) {
+        let normal = pair.planes[0].frame.z.cross(&pair.planes[1].frame.z);
+        let (sine, resolution) = (normal.length(), predicates.resolution::<N>());
+        let gap = sine * pair.extent.radius;
+        if !sine.is_short_of(N::from_f64(SHALLOW)) || gap.is_within(resolution) {
             return None;
         }
-        let points = self.corners(pair).iter().map(|&v| corners.all[v].point);
+        let points = self.corners(pair.carriers).iter();
+        let points = points.map(|&v| corners.all[v].point);
         let [start, end] = far_apart(&points.collect::<Vec<_>>())?;
-        if (end - start).length().is_within(predicates.reach()) {
+        let along = end - start;
+        if along.length().is_within(predicates.reach()) {
             return None;
         }
+        // Rounding turns the line by its share of the distance of the corners, or of the sine.
+        let rounded_corners = start.coords.length() * sine;
+        let direction = match rounded_corners.is_short_of(along.length()) {
+            true => along,
+            false => normal,
+        };
         let curve = Curve::Line(Line {
             origin: start,
-            direction: (end - start).unit(),
+            direction: direction.unit(),
         });
-        let middle = curve.parameter(&extent.centre);
-        let range = [middle - radius, middle + radius];
-        let is_on = |s: &Surface<N>| lies_on(&curve, range, s, resolution);
-        if !carriers.into_iter().all(is_on) {
+        let middle = curve.parameter(&pair.faces.centre().map(N::from_f64));
+        let half = N::from_f64(0.5 * pair.faces.diagonal()) + predicates.reach();
+        let range = [middle - half, middle + half];
+        let is_on = |plane: &Plane<N>| lies_on(&curve, range, &Surface::Plane(*plane), resolution);
+        if !pair.planes.into_iter().all(is_on) {
             return None;
         }
-        self.lines.insert(pair);
+        self.lines.insert(pair.carriers);
         Some(Branch {
             curve,
             range,

@@ -1,10 +1,8 @@
 //! The convex hull of points in space: gift wrapping (Chand and Kapur 1970) with whole facets, so
 //! that any number of points may lie in a plane.
 
-use super::orientation::{FilteredPoint, cross, difference, orientation};
-use super::{
-    MAX_HULL_POINTS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, distinct, is_in_line,
-};
+use super::orientation::{FilteredPoint, are_in_line, cross, difference, orientation};
+use super::{MAX_HULL_POINTS, Polyhedron, PolyhedronError, PolyhedronFace, SpacePoint, distinct};
 use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, VecDeque};
@@ -83,7 +81,7 @@ impl Wrapping<'_> {
         let on: Vec<usize> = (0..self.points.len())
             .filter(|&i| orientation([a, b, &below, &self.points[i]]).is_eq())
             .collect();
-        match on.iter().all(|&i| is_in_line(a, b, &self.points[i])) {
+        match on.iter().all(|&i| are_in_line([a, b, &self.points[i]])) {
             true => {
                 let least = on.iter().copied().min_by(|&a, &b| exact(a).cmp(exact(b)))?;
                 let most = on.iter().copied().max_by(|&a, &b| exact(a).cmp(exact(b)))?;
@@ -100,7 +98,7 @@ impl Wrapping<'_> {
         for i in 0..self.points.len() {
             let point = &self.points[i];
             match plane {
-                None if !is_in_line(a, b, point) => plane = Some(i),
+                None if !are_in_line([a, b, point]) => plane = Some(i),
                 None => {}
                 Some(c) if orientation([a, b, &self.points[c], point]).is_gt() => plane = Some(i),
                 Some(_) => {}

@@ -1,7 +1,7 @@
 //! Faces with a common edge in one plane are one face.
 
 use super::PolyhedronFace;
-use super::orientation::{FilteredPoint, is_same_side, orientation};
+use super::orientation::{FilteredPoint, are_in_line, is_same_side, orientation};
 use std::collections::BTreeMap;
 
 /// The faces, of which those are united that have a common edge, lie in one plane and look the same
@@ -82,7 +82,7 @@ fn is_coplanar(a: &PolyhedronFace, b: &PolyhedronFace, points: &[FilteredPoint])
 fn spanning(face: &PolyhedronFace, points: &[FilteredPoint]) -> Option<[usize; 3]> {
     let mut corners = face.corners();
     let (first, second) = (corners.next()?, corners.next()?);
-    let off = |i: &usize| !super::is_in_line(&points[first], &points[second], &points[*i]);
+    let off = |i: &usize| !are_in_line([first, second, *i].map(|i| &points[i]));
     Some([first, second, corners.find(off)?])
 }
 

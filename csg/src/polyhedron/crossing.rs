@@ -31,8 +31,13 @@ impl Polyhedron {
             near.retain(|&face| !self.faces[face].corners().any(|k| edge.contains(&k)));
             near.into_iter().find_map(|face| {
                 let plane = planes[face]?.map(|i| &points[i]);
-                let point = passage(edge.map(|i| &points[i]), plane)?;
-                self.has_inside(face, &point).then_some(point)
+                let ends = edge.map(|i| &points[i]);
+                let is_triangle = self.faces[face].corners().count() == 3;
+                if !are_on_both_sides(ends, plane) || is_triangle && !winds_about(plane, ends) {
+                    return None;
+                }
+                let point = passage(ends, plane);
+                (is_triangle || self.has_inside(face, &point)).then_some(point)
             })
         })
     }
@@ -80,16 +85,24 @@ fn bounds(corners: impl Iterator<Item = usize>, points: &[FilteredPoint]) -> [[f
     all
 }
 
+/// Whether the ends of an edge are on different sides of the plane of three points.
+fn are_on_both_sides(ends: [&FilteredPoint; 2], [a, b, c]: [&FilteredPoint; 3]) -> bool {
+    let [from, to] = ends.map(|end| orientation([a, b, c, end]));
+    from == to.reverse() && from != Ordering::Equal
+}
+
+/// Whether the line through two points passes through the inside of a triangle.
+fn winds_about([a, b, c]: [&FilteredPoint; 3], [p, q]: [&FilteredPoint; 2]) -> bool {
+    let sides = [[a, b], [b, c], [c, a]].map(|[from, to]| orientation([p, q, from, to]));
+    sides[0] != Ordering::Equal && sides[0] == sides[1] && sides[1] == sides[2]
+}
+
 /// The point between the ends of an edge in which it passes through the plane of three points.
-fn passage([p, q]: [&FilteredPoint; 2], [a, b, c]: [&FilteredPoint; 3]) -> Option<SpacePoint> {
-    let [from, to] = [p, q].map(|end| orientation([a, b, c, end]));
-    if from == to || from == Ordering::Equal || to == Ordering::Equal {
-        return None;
-    }
+fn passage([p, q]: [&FilteredPoint; 2], [a, b, c]: [&FilteredPoint; 3]) -> SpacePoint {
     let [from, to] = [p, q].map(|end| volume([a, b, c, end]));
     let t = &from / (&from - &to);
     let along = |i: usize| &p.exact[i] + &t * (&q.exact[i] - &p.exact[i]);
-    Some(std::array::from_fn(along))
+    std::array::from_fn(along)
 }
 
 /// Six times the signed volume of a tetrahedron.

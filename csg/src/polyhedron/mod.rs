@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use premio_kernel::number::rational::{Rational, to_f64};
 
-use orientation::{FilteredPoint, difference, orientation, plane_normal};
+use orientation::{FilteredPoint, are_in_line, orientation, plane_normal};
 pub(crate) use orientation::{cross, dot};
 
 /// The largest number of corners of all faces.
@@ -364,17 +364,12 @@ fn is_plane(points: &[FilteredPoint], corners: &[usize]) -> bool {
         return true;
     };
     let (a, b) = (&points[*a], &points[*b]);
-    let is_off_line = |c: &&usize| !is_in_line(a, b, &points[**c]);
+    let is_off_line = |c: &&usize| !are_in_line([a, b, &points[**c]]);
     let Some(c) = rest.iter().find(is_off_line) else {
         return true;
     };
     let on = |d: &usize| orientation([a, b, &points[*c], &points[*d]]).is_eq();
     rest.iter().all(on)
-}
-
-fn is_in_line(a: &FilteredPoint, b: &FilteredPoint, c: &FilteredPoint) -> bool {
-    let (u, v) = (difference(b, a), difference(c, a));
-    cross(&u, &v).iter().all(Rational::is_zero)
 }
 
 /// The faces with area, and those without if they are needed to close the others.

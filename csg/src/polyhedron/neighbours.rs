@@ -1,6 +1,6 @@
 //! Which faces touch each other at their common corners only.
 
-use super::orientation::{FilteredPoint, cross, difference, dot, orientation};
+use super::orientation::{FilteredPoint, are_in_line, cross, difference, dot, orientation};
 use super::{Polyhedron, PolyhedronFace, SpacePoint};
 use premio_kernel::number::rational::Rational;
 use std::cmp::Ordering;
@@ -58,11 +58,7 @@ pub(super) fn plane_of(face: &PolyhedronFace, points: &[FilteredPoint]) -> Optio
     let [first, second, others @ ..] = &face.loops.first()?[..] else {
         return None;
     };
-    let along = difference(&points[*second], &points[*first]);
-    let is_off = |third: &&usize| {
-        let normal = cross(&along, &difference(&points[**third], &points[*first]));
-        normal.iter().any(|x| !x.is_zero())
-    };
+    let is_off = |third: &&usize| !are_in_line([first, second, *third].map(|&i| &points[i]));
     let third = others.iter().find(is_off)?;
     Some([*first, *second, *third])
 }

@@ -47,6 +47,24 @@ pub(super) fn orientation([a, b, c, d]: [&FilteredPoint; 4]) -> Ordering {
     dot(&cross(&u, &v), &w).cmp(&Rational::ZERO)
 }
 
+/// The error of a cross product of two differences, as [`DETERMINANT_ROUNDINGS`].
+const CROSS_ROUNDINGS: f64 = 16.0;
+
+/// Whether three points are in line.
+pub(super) fn are_in_line([a, b, c]: [&FilteredPoint; 3]) -> bool {
+    let from_a = |p: &FilteredPoint| [0, 1, 2].map(|i| p.near[i] - a.near[i]);
+    let [u, v] = [b, c].map(from_a);
+    let most = |p: &[f64; 3]| p.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let size = [a, b, c].iter().fold(0.0f64, |m, p| m.max(most(&p.near)));
+    let error = CROSS_ROUNDINGS * f64::EPSILON * size * most(&u).max(most(&v));
+    let area = |i: usize, j: usize| (u[i] * v[j] - u[j] * v[i]).abs();
+    if area(0, 1) > error || area(1, 2) > error || area(2, 0) > error {
+        return false;
+    }
+    let [u, v] = [b, c].map(|p| difference(p, a));
+    cross(&u, &v).iter().all(Rational::is_zero)
+}
+
 /// Whether two faces of one plane look the same way.
 pub(super) fn is_same_side(
     a: &PolyhedronFace,
@@ -87,4 +105,38 @@ pub(super) fn plane_normal<'a>(corners: impl Iterator<Item = &'a SpacePoint>) ->
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A point on the line through two others, and one off it by a tiny fraction.
+        #[test]
+        fn points_next_to_a_line_are_not_on_it(
+            a in prop::array::uniform3(-1000i32..1000),
+            along in prop::array::uniform3(-1000i32..1000),
+            [t, off] in prop::array::uniform2(-20i32..20),
+            exponent in 0u32..60,
+        ) {
+            prop_assume!(along.iter().any(|x| *x != 0));
+            // Thirds are rounded in f64.
+            let third = |x: i32| Rational::from(x) / Rational::from(3);
+            let at = |t: &Rational, off: &Rational| -> SpacePoint {
+                std::array::from_fn(|i| {
+                    let across = if i == 0 { off.clone() } else { Rational::ZERO };
+                    third(a[i]) + third(along[i]) * t + across
+                })
+            };
+            let (zero, t) = (Rational::ZERO, third(t));
+            let off = Rational::from(off) / Rational::from(1u64 << exponent);
+            let points = [at(&zero, &zero), at(&Rational::ONE, &zero), at(&t, &off)];
+            let [p, q, r] = points.each_ref().map(FilteredPoint::new);
+            // The offset is along x, and so off the line unless the line is along x.
+            let is_on = off.is_zero() || along[1] == 0 && along[2] == 0;
+            prop_assert_eq!(are_in_line([&p, &q, &r]), is_on);
+        }
+    }
 }

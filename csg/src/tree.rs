@@ -127,7 +127,7 @@ impl Tree {
             }
         }
         let kept: Vec<usize> = (0..self.nodes.len()).filter(|&i| is_below[i]).collect();
-        let new_id = |child: &NodeId| NodeId(kept.partition_point(|&known| known < child.0));
+        let new_id = |child: &NodeId| NodeId(kept.binary_search(&child.0).unwrap_or_default());
         let copy = |&index: &usize| match &self.nodes[index] {
             TreeNode::Leaf(placed) => TreeNode::Leaf(placed.clone()),
             TreeNode::Operation { op, children } => TreeNode::Operation {

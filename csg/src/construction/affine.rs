@@ -6,7 +6,7 @@ use premio_kernel::motion::{Motion, RationalMatrix};
 use premio_kernel::number::rational::{Rational, exact_sqrt};
 
 use super::ConstructionError;
-use super::leaves::{own_corners, polyhedron};
+use super::plane_faces::{own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
 use crate::polyhedron::{SpacePoint, dot};
 use crate::primitive::Primitive;

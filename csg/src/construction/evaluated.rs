@@ -12,7 +12,7 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::rational::{Rational, to_f64};
 
 use super::ConstructionError;
-use super::leaves::{own_corners, polyhedron};
+use super::plane_faces::{own_corners, polyhedron};
 use crate::evaluate::{EvaluationOptions, evaluate};
 use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint, cross, dot};
 use crate::tree::Tree;

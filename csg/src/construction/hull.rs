@@ -6,7 +6,8 @@ use std::sync::Arc;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
-use super::leaves::{corners, of_union, own_corners};
+use super::leaves::of_union;
+use super::plane_faces::{corners, own_corners};
 use super::rounding::rounded_hull;
 use super::tapered_hull::{ConvexHull, tapered_hull};
 use super::{ConstructionError, frames};

@@ -6,7 +6,8 @@ use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
 use super::ConstructionError;
-use super::leaves::{Column, column, corners, of_union, own_corners, polyhedron, swept_face};
+use super::leaves::{Column, column, of_union};
+use super::plane_faces::{corners, own_corners, polyhedron, swept_face};
 use super::rounding::rounded;
 use crate::builder::{Builder, SolidId};
 use crate::figure::FigureError;

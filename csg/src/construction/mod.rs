@@ -3,7 +3,8 @@
 //!
 //! | module | what it gives |
 //! | --- | --- |
-//! | `leaves` | the placed primitives of a union, their corners and their columns |
+//! | `leaves` | the placed primitives of a union, and their columns |
+//! | `plane_faces` | the corners and faces of primitives with plane faces |
 //! | `evaluated` | the exact boundary of solids with plane faces |
 //! | `frames` | rotations along given directions |
 //! | `hull` | convex hulls |
@@ -21,6 +22,7 @@ mod frames;
 mod hull;
 mod leaves;
 mod minkowski;
+mod plane_faces;
 mod projection;
 mod rounding;
 mod tapered_hull;

@@ -8,7 +8,8 @@ use premio_kernel::number::rational::Rational;
 use super::ConstructionError;
 use super::evaluated::PlaneFacedBoundary;
 use super::frames::root;
-use super::leaves::{Column, column, corners, own_corners, polyhedron};
+use super::leaves::{Column, column};
+use super::plane_faces::{corners, own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{
     Disc, Figure, FigureEdge, FigureError, FigureExpression, FigureOperation, PlaneMap,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
-use super::leaves::{own_corners, polyhedron, swept_face};
+use super::plane_faces::{own_corners, polyhedron, swept_face};
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
 use crate::figure::{

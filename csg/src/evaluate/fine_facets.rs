@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use nalgebra::{Point3, Vector3};
+use premio_kernel::number::predicates::Compare;
 use premio_kernel::number::rational::to_f64;
 
 use crate::polyhedron::{Polyhedron, PolyhedronFace};
@@ -46,7 +47,7 @@ impl<'a> Facets<'a> {
                 let is_near = |normal: &Vector3<f64>, face: usize| {
                     let mut corners = self.faces[face].corners();
                     let height = |k: usize| normal.dot(&(self.points[k] - self.points[i])).abs();
-                    corners.all(|k| height(k) <= distance)
+                    corners.all(|k| height(k).is_at_most(distance))
                 };
                 if is_near(&normals[index], other) && is_near(&normals[other], index) {
                     return true;

@@ -12,8 +12,8 @@ pub enum ModelFigure {
     Disc {
         /// The radius.
         r: f64,
-        /// The rounding.
-        rounding: Rounding,
+        /// What its circles are.
+        form: CircleForm,
     },
     /// A polygon, by its corners in order.
     Polygon(Vec<[f64; 2]>),
@@ -43,7 +43,7 @@ pub enum ModelFigure {
 
 /// What a circle of a description is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub enum Rounding {
+pub enum CircleForm {
     /// A true circle.
     Circle,
     /// A regular polygon with so many corners, the first on the positive x axis.
@@ -86,8 +86,8 @@ pub enum SweepMotion {
     Revolution {
         /// The angle, in degrees.
         degrees: f64,
-        /// The rounding.
-        rounding: Rounding,
+        /// What its circles are.
+        form: CircleForm,
     },
 }
 
@@ -175,11 +175,8 @@ impl ModelFigure {
                 let high = rounder(*y).map(|y| Self::Rectangle([*x, y]));
                 wide.chain(high).collect()
             }
-            Self::Disc { r, rounding } => {
-                let disc = |r| Self::Disc {
-                    r,
-                    rounding: *rounding,
-                };
+            Self::Disc { r, form } => {
+                let disc = |r| Self::Disc { r, form: *form };
                 rounder(*r).map(disc).collect()
             }
             Self::Polygon(corners) if corners.len() > 3 => (0..corners.len())

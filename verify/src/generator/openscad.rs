@@ -1,6 +1,6 @@
 //! Models as `.csg` with figures, sweeps, hulls and Minkowski sums, as OpenSCAD flattens them.
 
-use super::figure::{ModelFigure, ModelSweep, OffsetCorner, Rounding, SweepMotion};
+use super::figure::{CircleForm, ModelFigure, ModelSweep, OffsetCorner, SweepMotion};
 use super::model::{
     ModelAxis, ModelConstruction, ModelNode, ModelNodeKind, ModelOperation, ModelPrimitive,
     ModelStep, PartModel,
@@ -71,7 +71,7 @@ fn of_primitive(primitive: &ModelPrimitive) -> String {
         })
     };
     let frustum = |r1, r2, h| {
-        let round = rounding(Rounding::Circle);
+        let round = circles(CircleForm::Circle);
         format!("cylinder({round}, h = {h}, r1 = {r1}, r2 = {r2}, center = false);\n")
     };
     match *primitive {
@@ -85,11 +85,11 @@ fn of_primitive(primitive: &ModelPrimitive) -> String {
         }
         ModelPrimitive::Cylinder { r, h } => frustum(r, r, h),
         ModelPrimitive::Frustum { r1, r2, h } => frustum(r1, r2, h),
-        ModelPrimitive::Sphere(r) => format!("sphere({}, r = {r});\n", rounding(Rounding::Circle)),
+        ModelPrimitive::Sphere(r) => format!("sphere({}, r = {r});\n", circles(CircleForm::Circle)),
         ModelPrimitive::Torus { major, minor } => {
             let disc = ModelFigure::Disc {
                 r: minor,
-                rounding: Rounding::Circle,
+                form: CircleForm::Circle,
             };
             of_sweep(&ModelSweep {
                 figure: ModelFigure::Moved {
@@ -99,7 +99,7 @@ fn of_primitive(primitive: &ModelPrimitive) -> String {
                 },
                 motion: SweepMotion::Revolution {
                     degrees: 360.0,
-                    rounding: Rounding::Circle,
+                    form: CircleForm::Circle,
                 },
             })
         }
@@ -114,7 +114,7 @@ fn of_sweep(sweep: &ModelSweep) -> String {
             scale,
             is_centred,
         } => {
-            let round = rounding(Rounding::Circle);
+            let round = circles(CircleForm::Circle);
             let scale = match scale == 1.0 {
                 true => String::new(),
                 false => format!("scale = [{scale}, {scale}], "),
@@ -122,11 +122,8 @@ fn of_sweep(sweep: &ModelSweep) -> String {
             let arguments = format!("height = {h}, center = {is_centred}, {scale}{round}");
             block("linear_extrude", &arguments, &figure)
         }
-        SweepMotion::Revolution {
-            degrees,
-            rounding: round,
-        } => {
-            let arguments = format!("angle = {degrees}, {}", rounding(round));
+        SweepMotion::Revolution { degrees, form } => {
+            let arguments = format!("angle = {degrees}, {}", circles(form));
             block("rotate_extrude", &arguments, &figure)
         }
     }
@@ -138,8 +135,8 @@ fn of_figure(figure: &ModelFigure) -> String {
         ModelFigure::Rectangle(size) => {
             format!("square(size = {}, center = false);\n", list(size))
         }
-        ModelFigure::Disc { r, rounding: round } => {
-            format!("circle({}, r = {r});\n", rounding(*round))
+        ModelFigure::Disc { r, form } => {
+            format!("circle({}, r = {r});\n", circles(*form))
         }
         ModelFigure::Polygon(corners) => {
             let corners: Vec<String> = corners.iter().map(|corner| list(corner)).collect();
@@ -154,7 +151,7 @@ fn of_figure(figure: &ModelFigure) -> String {
             distance, corner, ..
         } => {
             let arguments = match corner {
-                OffsetCorner::Round => format!("r = {distance}, {}", rounding(Rounding::Circle)),
+                OffsetCorner::Round => format!("r = {distance}, {}", circles(CircleForm::Circle)),
                 OffsetCorner::Sharp => format!("delta = {distance}, chamfer = false"),
                 OffsetCorner::Chamfer => format!("delta = {distance}, chamfer = true"),
             };
@@ -172,10 +169,10 @@ fn of_figure(figure: &ModelFigure) -> String {
 }
 
 /// The arguments that say what circles are.
-fn rounding(rounding: Rounding) -> String {
-    let corners = match rounding {
-        Rounding::Circle => 0,
-        Rounding::Polygon(corners) => corners,
+fn circles(form: CircleForm) -> String {
+    let corners = match form {
+        CircleForm::Circle => 0,
+        CircleForm::Polygon(corners) => corners,
     };
     format!("$fn = {corners}, $fa = 12, $fs = 2")
 }

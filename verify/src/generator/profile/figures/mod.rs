@@ -4,7 +4,7 @@
 mod plane;
 
 use super::grid;
-use crate::generator::figure::{ModelSweep, Rounding, SweepMotion};
+use crate::generator::figure::{CircleForm, ModelSweep, SweepMotion};
 use crate::generator::model::{
     ModelConstruction, ModelNodeId, ModelOperation, ModelPrimitive, ModelStep, Notation, PartModel,
 };
@@ -68,12 +68,12 @@ fn revolution(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId 
         true => random.choose(&[30.0, 90.0, 135.0, 180.0, 270.0, 300.0]),
         false => 360.0,
     };
-    let rounding = match degrees == 360.0 && random.once_in(5) {
-        true => Rounding::Polygon(random.choose(&[3, 4, 5, 6, 8])),
-        false => Rounding::Circle,
+    let form = match degrees == 360.0 && random.once_in(5) {
+        true => CircleForm::Polygon(random.choose(&[3, 4, 5, 6, 8])),
+        false => CircleForm::Circle,
     };
     let figure = plane::right_of_axis(random);
-    let motion = SweepMotion::Revolution { degrees, rounding };
+    let motion = SweepMotion::Revolution { degrees, form };
     model.sweep(ModelSweep { figure, motion }, Vec::new())
 }
 

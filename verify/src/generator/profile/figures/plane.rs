@@ -1,6 +1,6 @@
 //! Random figures on a half-unit grid: sides continue each other, arcs touch sides and corners.
 
-use crate::generator::figure::{ModelFigure, OffsetCorner, Rounding};
+use crate::generator::figure::{CircleForm, ModelFigure, OffsetCorner};
 use crate::generator::model::ModelOperation;
 use crate::generator::random::RandomChoices;
 
@@ -64,7 +64,7 @@ fn outline(random: &mut RandomChoices) -> ModelFigure {
         0 | 1 => ModelFigure::Rectangle([0; 2].map(|_| random.half(1, 8))),
         2 | 3 => ModelFigure::Disc {
             r: random.half(1, 5),
-            rounding: rounding(random),
+            form: form(random),
         },
         4 => convex(random),
         _ => star(random),
@@ -72,10 +72,10 @@ fn outline(random: &mut RandomChoices) -> ModelFigure {
 }
 
 /// A true circle, or one time in four a polygon.
-fn rounding(random: &mut RandomChoices) -> Rounding {
+fn form(random: &mut RandomChoices) -> CircleForm {
     match random.once_in(4) {
-        true => Rounding::Polygon(random.choose(&[3, 4, 5, 6, 8, 12])),
-        false => Rounding::Circle,
+        true => CircleForm::Polygon(random.choose(&[3, 4, 5, 6, 8, 12])),
+        false => CircleForm::Circle,
     }
 }
 
@@ -84,7 +84,7 @@ pub(super) fn convex(random: &mut RandomChoices) -> ModelFigure {
     if random.once_in(2) {
         return ModelFigure::Disc {
             r: random.half(1, 5),
-            rounding: Rounding::Polygon(random.choose(&[3, 4, 5, 6, 8])),
+            form: CircleForm::Polygon(random.choose(&[3, 4, 5, 6, 8])),
         };
     }
     let [x, y] = [0; 2].map(|_| random.half(1, 6));

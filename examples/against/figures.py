@@ -177,9 +177,10 @@ class Builder:
         return type(parts[0]).batch_hull(parts) if parts else None
 
     def minkowski(self, node, _):
-        """The sums of all corners. Manifold's own sum is wrong for some convex parts."""
-        parts = self.operands(node)
-        if any(part is None for part in parts):
+        """The sums of all corners. Manifold's own sum is wrong for some convex parts. As in OpenSCAD
+        an empty operand adds nothing."""
+        parts = [part for part in self.operands(node) if part is not None]
+        if not parts:
             return None
         for part in parts:
             if abs(part.hull().volume() - part.volume()) > 1e-6 * part.volume():

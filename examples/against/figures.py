@@ -1,4 +1,4 @@
-"""Manifold beside premio on figures: reads a `.csg` for `premio fuzz --profile figures --against`.
+"""Measures figures and their solids with Manifold: reads a `.csg` for `premio fuzz --profile figures --against`.
 
 usage: figures.py FILE.csg
 

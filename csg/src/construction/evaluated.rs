@@ -143,7 +143,7 @@ impl CornerPlanes<'_> {
             return None;
         };
         let (origin, normal) = (plane.frame.origin, plane.frame.z);
-        // Planes of one frame that differ by the resolution over the size are one.
+        // Parallel planes within the resolution of each other are one.
         let is_same = |known: &ExactPlane| {
             known.distance(&origin) <= 2.0 * self.resolution
                 && known.near.0.cross(&normal).norm() <= SAME

@@ -9,6 +9,7 @@ use crate::ray_casting::RayOracle;
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 use premio_kernel::number::rational::Rational;
+use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn n(x: i32) -> Rational {
@@ -272,11 +273,48 @@ fn differences_with_plane_faces_are_polyhedra() {
         let part = turned(&mut b, part, degrees);
         let hull = convex_hull(&mut b, &[part], 0.0).unwrap().solid;
         assert_eq!(check(&b, hull, 64.0 - 4.0 / 3.0), ["plane"]);
-        // The notch is smaller by the block, and so its mouth is as wide as before.
+        // The sum fills one unit of the notch at its walls, and adds one unit at its mouth.
         let unit = block(&mut b, [1; 3]);
         let unit = turned(&mut b, unit, degrees);
         let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
         assert_eq!(check(&b, sum, 125.0 - 8.0), ["plane"]);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// A block of 4 by 4 by 4 less blocks of whole units, tilted, and its sum with a unit block. The
+    /// volume is the number of unit cells.
+    #[test]
+    fn sums_of_notched_blocks_and_a_block(
+        tools in prop::collection::vec(prop::array::uniform3((0i32..3, 1i32..3)), 1..4),
+        degrees in prop::sample::select(vec![0, 30, 45]),
+    ) {
+        let mut b = Builder::new();
+        let mut parts = vec![block(&mut b, [4; 3])];
+        for tool in &tools {
+            let part = block(&mut b, tool.map(|(_, size)| size));
+            parts.push(b.moved(part, Transform::shift(tool.map(|(at, _)| n(at)))));
+        }
+        let part = b.operation(Operation::Difference, &parts);
+        let unit = block(&mut b, [1; 3]);
+        let [part, unit] = [part, unit].map(|part| turned(&mut b, part, degrees));
+        let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
+        let is_cut = |cell: [i32; 3]| {
+            let within = |tool: &[(i32, i32); 3]| {
+                (0..3).all(|i| (tool[i].0..tool[i].0 + tool[i].1).contains(&cell[i]))
+            };
+            tools.iter().any(within)
+        };
+        let has = |cell: [i32; 3]| cell.iter().all(|x| (0..4).contains(x)) && !is_cut(cell);
+        let cells = (0..125).map(|k| [k % 5, k / 5 % 5, k / 25]);
+        let sums = cells.filter(|[x, y, z]| {
+            (0..8).any(|k| has([x - k % 2, y - k / 2 % 2, z - k / 4]))
+        });
+        let known = evaluate(&b.finish(sum).unwrap(), &EvaluationOptions::default()).unwrap();
+        let (found, count) = (known.mass().volume, sums.count() as f64);
+        prop_assert!((found - count).abs() < 1e-9, "{} and not {}", found, count);
     }
 }
 

@@ -403,8 +403,9 @@ mod tests {
         format!("polyhedron(points = [{rim}, [0.3, 0.2, {apex}]], faces = [{base}, {sides}]);")
     }
 
-    /// The bases of both pyramids are cut into fans about different corners. With these heights
-    /// diagonals of both cross in a point of each, and lie in the plane of a facet of each.
+    /// The bases of the pyramids are cut into fans about different corners. With these heights a
+    /// diagonal of one base crosses a diagonal of the other, and a facet of one base is coplanar with a
+    /// facet of the other.
     #[test]
     fn diagonals_of_two_fans_cross() {
         assert_sums(&[1, 0, 1, 0, 0, 0]);

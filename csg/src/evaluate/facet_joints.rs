@@ -186,7 +186,8 @@ impl FacetJoints {
     ///
     /// An edge, and a line through two corners, meets a plane through a corner there only. Any other
     /// curve on one of two planes whose line is known meets the other plane where the line meets the
-    /// curve's other carrier. Edges and known lines wait for no other curve.
+    /// curve's other carrier. The cuts of edges and known lines themselves are always computed,
+    /// except at their corners.
     pub fn knows_cuts<N: Float>(
         &self,
         m: &IntersectionCurve<N>,
@@ -209,8 +210,8 @@ impl FacetJoints {
     }
 
     /// Whether a facet cuts a curve only where an edge or a corner of its polyhedron does: the facets
-    /// near it on the curve's carriers touch it at common corners and edges only. An edge of another
-    /// polyhedron, and a line through two corners, waits for no edge.
+    /// near it on the curve's carriers touch it at common corners and edges only. That is
+    /// not known for an edge of another polyhedron, nor for a line through two corners.
     pub fn cuts_at_edges<N: Float>(
         &self,
         m: &IntersectionCurve<N>,

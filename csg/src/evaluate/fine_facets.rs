@@ -15,18 +15,18 @@ use crate::tree::Tree;
 /// points of such facets lie would be ambiguous.
 pub(super) fn are_within(tree: &Tree, distance: f64) -> bool {
     tree.leaves().any(|(_, placed)| match &placed.primitive {
-        Primitive::Polyhedron { polyhedron } => Facets::new(polyhedron).are_within(distance),
+        Primitive::Polyhedron { polyhedron } => RoundedFacets::new(polyhedron).are_within(distance),
         _ => false,
     })
 }
 
 /// The facets of a polyhedron with rounded corners.
-struct Facets<'a> {
+struct RoundedFacets<'a> {
     points: Vec<Point3<f64>>,
     faces: &'a [PolyhedronFace],
 }
 
-impl<'a> Facets<'a> {
+impl<'a> RoundedFacets<'a> {
     fn new(polyhedron: &'a Polyhedron) -> Self {
         let point = |p: &[_; 3]| Point3::from(p.each_ref().map(to_f64));
         Self {

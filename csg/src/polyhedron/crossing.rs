@@ -1,7 +1,7 @@
 //! Whether the faces of a polyhedron cross each other.
 
 use super::neighbours::plane_of;
-use super::orientation::{FilteredPoint, orientation};
+use super::orientation::{FilteredPoint, orientation, sixfold_volume};
 use super::{Polyhedron, PolyhedronFace, SpacePoint};
 use premio_kernel::number::rational::Rational;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -99,17 +99,10 @@ fn winds_about([a, b, c]: [&FilteredPoint; 3], [p, q]: [&FilteredPoint; 2]) -> b
 
 /// The point between the ends of an edge in which it passes through the plane of three points.
 fn passage([p, q]: [&FilteredPoint; 2], [a, b, c]: [&FilteredPoint; 3]) -> SpacePoint {
-    let [from, to] = [p, q].map(|end| volume([a, b, c, end]));
+    let [from, to] = [p, q].map(|end| sixfold_volume([a, b, c, end]));
     let t = &from / (&from - &to);
     let along = |i: usize| &p.exact[i] + &t * (&q.exact[i] - &p.exact[i]);
     std::array::from_fn(along)
-}
-
-/// Six times the signed volume of a tetrahedron.
-fn volume([a, b, c, d]: [&FilteredPoint; 4]) -> Rational {
-    use super::orientation::{cross, difference, dot};
-    let [u, v, w] = [b, c, d].map(|p| difference(p, a));
-    dot(&cross(&u, &v), &w)
 }
 
 #[cfg(test)]

@@ -43,8 +43,13 @@ pub(super) fn orientation([a, b, c, d]: [&FilteredPoint; 4]) -> Ordering {
     if value.abs() > DETERMINANT_ROUNDINGS * f64::EPSILON * size * span * span {
         return value.total_cmp(&0.0);
     }
+    sixfold_volume([a, b, c, d]).cmp(&Rational::ZERO)
+}
+
+/// Six times the signed volume of a tetrahedron.
+pub(super) fn sixfold_volume([a, b, c, d]: [&FilteredPoint; 4]) -> Rational {
     let [u, v, w] = [b, c, d].map(|p| difference(p, a));
-    dot(&cross(&u, &v), &w).cmp(&Rational::ZERO)
+    dot(&cross(&u, &v), &w)
 }
 
 /// The error of a cross product of two differences, as [`DETERMINANT_ROUNDINGS`].

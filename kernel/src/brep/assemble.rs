@@ -77,7 +77,13 @@ struct EndAngle<N: Float = f64> {
 struct FaceCorner {
     vertex: usize,
     side: SurfaceSide,
+    /// The upper (`Along`) or lower pole of a torus. Both poles of a horn torus are one point.
+    pole: Option<Sense>,
 }
+
+/// The fraction of an edge from its end at which it shows which of two poles in one point it
+/// approaches.
+const NEAR_POLE: f64 = 1.0 / 8.0;
 
 /// The boundary without its shells, solids and touches.
 struct Unbound<N: Float = f64> {
@@ -155,11 +161,15 @@ impl<'a, N: Float> Assembler<'a, N> {
         let mut meeting: BTreeMap<FaceCorner, [Vec<usize>; 2]> = BTreeMap::new();
         for i in 0..self.halves.len() {
             let side = self.halves[i].face_use.side();
-            let corner = |vertex: usize| FaceCorner { vertex, side };
+            let corner = |vertex: usize, at_end: bool| FaceCorner {
+                vertex,
+                side,
+                pole: self.pole(side, vertex, self.edge_end(i, at_end)),
+            };
             match (self.end(i, false), self.end(i, true)) {
                 (Some(start), Some(end)) => {
-                    meeting.entry(corner(end)).or_default()[0].push(i);
-                    meeting.entry(corner(start)).or_default()[1].push(i);
+                    meeting.entry(corner(end, true)).or_default()[0].push(i);
+                    meeting.entry(corner(start, false)).or_default()[1].push(i);
                 }
                 _ => self.next[i] = i,
             }
@@ -223,7 +233,7 @@ impl<'a, N: Float> Assembler<'a, N> {
     /// are sorted on a wider one, which only they need to reach.
     fn order(&self, corner: FaceCorner, ends: Vec<End>) -> Result<Vec<End>, AssemblyError> {
         let v = self.raw.points[corner.vertex].place;
-        let frame = self.tangent_frame(corner.side, &v);
+        let frame = self.tangent_frame(corner, &v);
         let mut bundles = vec![ends];
         while let Some(at) = bundles.iter().position(|b| b.len() > 1) {
             let parts = self.separated(&v, &frame, &bundles[at]);
@@ -265,14 +275,39 @@ impl<'a, N: Float> Assembler<'a, N> {
         best
     }
 
-    fn tangent_frame(&self, side: SurfaceSide, v: &Point3<N>) -> Frame<N> {
-        let s = &self.raw.surfaces[side.surface];
-        let normal = match s {
-            // At the apex the rulings are sorted around the axis.
-            Surface::Cone(c) if self.predicates.within((v - c.frame.origin).length()) => -c.frame.z,
+    fn tangent_frame(&self, corner: FaceCorner, v: &Point3<N>) -> Frame<N> {
+        let s = &self.raw.surfaces[corner.side.surface];
+        let normal = match (s, corner.pole) {
+            // At an apex the directions are sorted around the axis.
+            (Surface::Cone(c), _) if self.predicates.within((v - c.frame.origin).length()) => {
+                -c.frame.z
+            }
+            (_, Some(pole)) => s.frame().z * pole.sign::<N>(),
             _ => s.normal(v),
         };
-        Frame::about(*v, normal * side.outward.sign::<N>())
+        Frame::about(*v, normal * corner.side.outward.sign::<N>())
+    }
+
+    /// The pole of a torus that a vertex is, as an edge that ends there approaches it.
+    fn pole(&self, side: SurfaceSide, vertex: usize, end: End) -> Option<Sense> {
+        let Surface::Torus(torus) = &self.raw.surfaces[side.surface] else {
+            return None;
+        };
+        let v = self.raw.points[vertex].place;
+        let is_here = |pole: Point3<N>| self.predicates.within((v - pole).length());
+        if !torus.poles().any(is_here) {
+            return None;
+        }
+        let (origin, axis) = (torus.frame.origin, torus.frame.z);
+        let up = (v - origin).dot(&axis);
+        let up = match self.predicates.within(up) {
+            true => (self.point_along(end, N::from_f64(NEAR_POLE)) - v).dot(&axis),
+            false => up,
+        };
+        Some(match up.is_above_zero() {
+            true => Sense::Along,
+            false => Sense::Against,
+        })
     }
 
     /// The parameters at one of an edge's ends, and at a fraction `along` of its range from there.
@@ -358,7 +393,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         }
         for &side in &self.raw.whole {
             let euler = match self.raw.surfaces[side.surface] {
-                Surface::Torus(_) => 0,
+                Surface::Torus(torus) if torus.is_ring() => 0,
                 _ => 2,
             };
             faces.push(Region {

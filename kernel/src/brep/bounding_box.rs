@@ -7,6 +7,7 @@ use crate::geometry::bounds::{Aabb, tight_bounds};
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::direction;
 use crate::number::float::Float;
+use crate::number::predicates::Compare;
 use crate::number::predicates::ROUNDING;
 use nalgebra::Vector3;
 
@@ -31,7 +32,7 @@ pub(super) fn face_bounds<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     edges.hull(&bulge(brep, face, &edges))
 }
 
-/// The box of a cone's apex and of the points of a face whose normal is parallel to a coordinate
+/// The box of a face's apexes and of its points at which the normal is parallel to a coordinate
 /// axis, where these lie outside `known`.
 fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     let surface = brep.surface(face);
@@ -61,9 +62,10 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
             Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {}
         }
     }
-    if let Surface::Cone(c) = surface {
-        points.push(c.frame.origin);
+    if let Surface::Torus(t) = surface {
+        points.retain(|p| t.own_sheet([p.x, p.y, p.z]).reaches(N::ZERO));
     }
+    points.extend(surface.apexes());
     // Edges close to such a point give the same box, to rounding.
     let rounding = ROUNDING * known.diagonal();
     if rounding.is_finite() {

@@ -10,6 +10,7 @@ mod density;
 mod face;
 mod ground;
 mod outline;
+mod pole_turns;
 mod strip;
 
 use super::Brep;
@@ -384,7 +385,7 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     let radius = match surface {
         _ if !brep.topology.face(face).loops.is_empty() => return b,
         Surface::Sphere(s) => s.radius,
-        Surface::Torus(t) => t.major + t.minor,
+        Surface::Torus(t) => t.circumradius(),
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
     };
     Aabb::new(&surface.frame().origin).grown(radius)

@@ -178,7 +178,8 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             }
             Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
             Surface::Sphere(s) => self.spherical(s, p, k, turn),
-            Surface::Torus(s) => self.toric(s, p, k, turn),
+            Surface::Torus(s) if s.is_ring() => self.toric(s, p, k, turn),
+            Surface::Torus(s) => self.on_sheet(s, p, k, turn),
         }
     }
 
@@ -260,6 +261,67 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         }
         // The last leg passes through the target. If nothing was found, the target was missed.
         Outcome::Unclear
+    }
+
+    /// The k-th path to a point of the boundary of a face of a torus that reaches its axis.
+    fn on_sheet(&self, torus: &Torus<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
+        let Some(way) = self.way_on_sheet(torus, p, k, turn) else {
+            return Outcome::Unclear;
+        };
+        for leg in &way {
+            match self.take(leg) {
+                Outcome::Nothing => {}
+                decided => return decided,
+            }
+        }
+        Outcome::Unclear
+    }
+
+    /// A parallel to the meridian of a point of the boundary, and that meridian through the point;
+    /// or a meridian to the parallel of the point, and that parallel. Later paths start with a
+    /// lateral step. A pole has no parallel, and is on every meridian.
+    fn way_on_sheet(
+        &self,
+        torus: &Torus<N>,
+        p: &Point3<N>,
+        k: usize,
+        turn: N,
+    ) -> Option<Vec<SurfacePath<N>>> {
+        let round = |from: &Point3<N>| {
+            SurfacePath::parallel(self.surface, from, Sense::Along, self.resolution)
+        };
+        let meridian = |from: &Point3<N>, u: N, v: N| {
+            let [_, start] = self.surface.parameters(from);
+            let sense = match v.is_short_of(start) {
+                true => Sense::Against,
+                false => Sense::Along,
+            };
+            SurfacePath::meridian_at(torus, from, u, sense)
+        };
+        let [u, v] = self.surface.parameters(&self.target(k / 2));
+        let mut way = Vec::with_capacity(3);
+        let mut from = *p;
+        if k >= WALKS / 2
+            && let Some(walk) = round(&from)
+        {
+            let [theta, phi] = self.surface.parameters(&from);
+            from = self.surface.point(theta + turn, phi);
+            way.push(walk.upto(walk.at(&from)));
+        }
+        let [theta, phi] = self.surface.parameters(&from);
+        if k.is_multiple_of(2) {
+            if let Some(walk) = round(&from) {
+                from = self.surface.point(u, phi);
+                way.push(walk.upto(walk.at(&from)));
+            }
+            way.push(meridian(&from, u, v));
+        } else {
+            let walk = meridian(&from, theta, v);
+            let corner = self.surface.point(theta, v);
+            way.push(walk.upto(walk.at(&corner)));
+            way.push(round(&corner)?);
+        }
+        Some(way)
     }
 
     /// The k-th path to a point of the boundary: along one circle to its intersection with the

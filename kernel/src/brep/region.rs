@@ -1,11 +1,12 @@
 //! Groups the loops of one surface into the regions that they bound.
 //!
 //! From each loop a path runs over the surface to its end: along a line of a plane, a ruling of a
-//! cylinder or a cone, a great circle of a sphere to a fixed point. Between entering the boundary
+//! cylinder or a cone, a meridian of a torus that reaches its axis, a great circle of a sphere to a
+//! fixed point. Between entering the boundary
 //! and leaving it the path is in one region, so the two loops that it crosses bound the same
-//! region. Every loop of a plane, a cylinder, a cone or a sphere separates the surface (Jordan), so
-//! these pairs connect all loops of a region. On a torus both circles through each loop are
-//! followed, and paths to the first loop.
+//! region. Every loop of these surfaces separates the surface (Jordan), so these pairs connect all
+//! loops of a region. On a ring torus both circles through each loop are followed, and paths to the
+//! first loop.
 
 mod torus;
 
@@ -114,7 +115,7 @@ pub(super) fn regions<'a, N: Float>(
         parent,
         winding: [false; 2],
     };
-    if let Surface::Torus(_) = surface {
+    if is_ring(surface) {
         for ring in loops {
             let [around, along] = sorter.turns(ring).winds;
             sorter.winding[0] |= around;
@@ -167,7 +168,7 @@ impl<N: Float> Sorter<'_, N> {
     /// Joins a loop to those that bound the same region. Returns `None` if a path was clear,
     /// otherwise an error at a point of the loop.
     fn connect(&mut self, ring: usize, attempt: usize) -> Option<RegionError> {
-        if let Surface::Cylinder(_) | Surface::Cone(_) = self.surface {
+        if leads_down(self.surface) {
             return self.connect_ruled(ring, attempt);
         }
         let mut place = [0.0; 3];
@@ -201,7 +202,8 @@ impl<N: Float> Sorter<'_, N> {
         Start { arc, point, left }
     }
 
-    /// Follows the rulings of a cylinder or a cone downwards to the lowest loop of the region. If
+    /// Follows the rulings of a cylinder or a cone, or the meridians of a torus that reaches its axis,
+    /// downwards to the lowest loop of the region. If
     /// the region does not lie below a starting point, the path starts on the loop's other side and
     /// reaches the region through the loop itself, unless the loop is the lowest. If all paths are
     /// unclear, or the loop consists of rulings, the path first turns along a parallel.
@@ -230,14 +232,17 @@ impl<N: Float> Sorter<'_, N> {
         (!turned).then_some(RegionError { place })
     }
 
-    /// The endless path down the ruling through a point.
+    /// The path down the ruling or the meridian through a point.
     fn down(&self, p: &Point3<N>) -> Option<SurfacePath<N>> {
+        if let Surface::Torus(torus) = self.surface {
+            return Some(SurfacePath::meridian(torus, p, Sense::Against));
+        }
         let [u, _] = self.surface.parameters(p);
         Some(SurfacePath::ruling(self.surface, p, u, Sense::Along)?.reversed())
     }
 
-    /// Follows legs, the last of which leads downwards. Where loops pass through a cone's apex the
-    /// path goes around the apex just before it, to the loop that bounds the sector from which it
+    /// Follows legs, the last of which leads downwards. Where loops pass through the apex below, the
+    /// path goes around it just before it, to the loop that bounds the sector from which it
     /// came. The distance from the apex grows with each attempt, for loops that are tangent there.
     fn follow_down(
         &mut self,
@@ -247,10 +252,9 @@ impl<N: Float> Sorter<'_, N> {
         attempt: usize,
     ) -> bool {
         let mut goal = None;
-        if let Surface::Cone(c) = self.surface
+        if let Some(apex) = lowest(self.surface)
             && let Some(down) = legs.pop()
         {
-            let apex = c.frame.origin;
             let height = down.at(&apex);
             let around = self.arcs.around(&apex);
             let passed = around
@@ -317,7 +321,7 @@ impl<N: Float> Sorter<'_, N> {
     }
 
     /// Follows the legs of a path and joins the loops that it crosses; `goal` is joined if the path
-    /// ends inside. The path starts into the region of the loop. A path down a ruling may also
+    /// ends inside. The path starts into the region of the loop. A path downwards may also
     /// start into the region on the other side of the edge, if there is one. Returns false if
     /// anything is unclear.
     fn follow(
@@ -356,7 +360,7 @@ impl<N: Float> Sorter<'_, N> {
     /// The loop whose region a path enters first, if it enters one; `None` if the path runs along
     /// its starting arc.
     fn entered(&self, ring: usize, arc: usize, heading: N) -> Option<Option<usize>> {
-        let is_ruled = matches!(self.surface, Surface::Cylinder(_) | Surface::Cone(_));
+        let is_ruled = leads_down(self.surface);
         if heading.reaches(N::from_f64(SLANT)) {
             Some(Some(ring))
         } else if is_ruled && (-heading).reaches(N::from_f64(SLANT)) {
@@ -496,7 +500,7 @@ impl<N: Float> Sorter<'_, N> {
     /// The Euler characteristic of a region.
     fn euler(&self, loops: &[Vec<DirectedArc<'_, N>>], list: &[usize]) -> i32 {
         let n = list.len() as i32;
-        if !matches!(self.surface, Surface::Torus(_)) {
+        if !is_ring(self.surface) {
             return 2 - n;
         }
         // A region with a loop that is not contractible is an annulus with holes; one with a
@@ -505,6 +509,25 @@ impl<N: Float> Sorter<'_, N> {
         let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area.is_above_zero());
         if is_part_of_sphere { 2 - n } else { -n }
     }
+}
+
+/// Whether a surface is a torus whose tube does not reach the axis. Its loops may not separate it.
+fn is_ring<N: Float>(surface: &Surface<N>) -> bool {
+    matches!(surface, Surface::Torus(torus) if torus.is_ring())
+}
+
+/// Whether paths down the rulings or the meridians of a surface connect its loops.
+fn leads_down<N: Float>(surface: &Surface<N>) -> bool {
+    match surface {
+        Surface::Cylinder(_) | Surface::Cone(_) => true,
+        Surface::Torus(torus) => !torus.is_ring(),
+        Surface::Plane(_) | Surface::Sphere(_) => false,
+    }
+}
+
+/// The point in which all paths downwards end: the apex of a cone, the lower pole of a torus.
+fn lowest<N: Float>(surface: &Surface<N>) -> Option<Point3<N>> {
+    surface.apexes().last()
 }
 
 /// A point of a sphere that is unlikely to be special; a different one for each attempt.

@@ -259,6 +259,25 @@ impl<N: Float> SurfacePath<N> {
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial))
     }
 
+    /// The meridian of a torus that reaches its axis, through `start`, to the pole to which the angle
+    /// about the tube increases or decreases.
+    pub fn meridian(torus: &Torus<N>, start: &Point3<N>, sense: Sense) -> Self {
+        let q = torus.frame.coordinates(start);
+        Self::meridian_at(torus, start, q.y.atan2(q.x), sense)
+    }
+
+    /// The meridian at the angle `u` about the axis, through a point of it, which may be a pole.
+    pub fn meridian_at(torus: &Torus<N>, start: &Point3<N>, u: N, sense: Sense) -> Self {
+        let f = &torus.frame;
+        let (sin, cos) = u.sin_cos();
+        let radial = f.x * cos + f.y * sin;
+        let axis = radial.cross(&f.z) * sense.sign::<N>();
+        let centre = f.origin + radial * torus.major;
+        let [_, v] = Surface::Torus(*torus).parameters(start);
+        let turn = torus.pole_angle() - v * sense.sign::<N>();
+        Self::circle(start, centre, axis, Branch::Half(f.origin, radial)).upto(turn * torus.minor)
+    }
+
     /// The path from the same point in the direction that leads to the side of `left` at `p`.
     pub(super) fn toward(self, p: &Point3<N>, left: &Vector3<N>) -> Self {
         if self.direction(p).dot(left).is_below_zero() {
@@ -506,6 +525,11 @@ impl<N: Float> SurfacePath<N> {
         }
         let [theta, phi] = surface.parameters(&self.start);
         let (fixed, angle) = match self.branch {
+            // The path may start at a pole.
+            Branch::Half(_, radial) if !curve.torus.is_ring() => {
+                let out = surface.frame().components(&radial);
+                (TorusParameter::Around, out.y.atan2(out.x))
+            }
             Branch::Half(..) => (TorusParameter::Around, theta),
             Branch::Parallel(..) | Branch::Level(..) => (TorusParameter::Tube, phi),
             Branch::Whole => return None,

@@ -162,7 +162,7 @@ fn size<N: Float>(surface: &Surface<N>, away: N) -> N {
         Surface::Cylinder(s) => (away + s.radius, 2),
         Surface::Sphere(s) => (away + s.radius, 2),
         Surface::Cone(_) => (away, 2),
-        Surface::Torus(s) => (away + s.major + s.minor, 4),
+        Surface::Torus(s) => (away + s.major.abs() + s.minor, 4),
     };
     lengths.powi(degree)
 }

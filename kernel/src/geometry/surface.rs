@@ -7,6 +7,7 @@ use super::frame::Frame;
 use crate::geometry::vector::Length;
 use crate::number::analytic::dot;
 use crate::number::float::{Analytic, Float};
+use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
 /// A plane: its frame's z axis is the normal, pointing to the outside.
@@ -45,15 +46,85 @@ pub struct Sphere<N: Float = f64> {
     pub radius: N,
 }
 
-/// A ring torus about its frame's z axis.
+/// A torus about its frame's z axis: the points whose distance ρ from the axis and height z satisfy
+/// (ρ - major)² + z² = minor².
+///
+/// It is a ring if the tube does not reach the axis. Otherwise it is one sheet of a horn or spindle
+/// torus, which ends in two poles on the axis: the outer sheet (an apple) if `major` is positive,
+/// the inner one (a lemon) if it is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus<N: Float = f64> {
     /// Origin at the centre, z along the axis.
     pub frame: Frame<N>,
-    /// The radius of the spine circle.
+    /// The radius of the spine circle; negative for the inner sheet.
     pub major: N,
-    /// The radius of the tube, less than `major`.
+    /// The radius of the tube, greater than `-major`.
     pub minor: N,
+}
+
+impl<N: Float> Torus<N> {
+    /// Whether the tube does not reach the axis.
+    pub fn is_ring(&self) -> bool {
+        self.minor.is_short_of(self.major)
+    }
+
+    /// The greatest distance from the axis.
+    pub fn reach(&self) -> N {
+        self.major + self.minor
+    }
+
+    /// The greatest distance from the centre: at the equator, or at the poles of the inner sheet.
+    pub fn circumradius(&self) -> N {
+        self.pole_height().unwrap_or(N::ZERO).max(self.reach())
+    }
+
+    /// The angle about the tube at the upper pole; pi for a ring, whose parallels all have an angle
+    /// in [-pi, pi].
+    pub fn pole_angle(&self) -> N {
+        match self.pole_height() {
+            Some(height) if height > N::ZERO => height.atan2(-self.major),
+            _ => N::PI,
+        }
+    }
+
+    /// The height of the poles above and below the centre; `None` for a ring.
+    pub fn pole_height(&self) -> Option<N> {
+        let square = (self.minor - self.major) * self.reach();
+        (!self.is_ring()).then(|| square.max(N::ZERO).sqrt())
+    }
+
+    /// The poles: two, or one where both coincide; none of a ring.
+    pub fn poles(&self) -> impl Iterator<Item = Point3<N>> + use<N> {
+        let (origin, up) = (self.frame.origin, self.frame.z);
+        let heights = self
+            .pole_height()
+            .map(|height| match height.is_above_zero() {
+                true => [Some(height), Some(-height)],
+                false => [Some(height), None],
+            });
+        let heights = heights.into_iter().flatten().flatten();
+        heights.map(move |height| origin + up * height)
+    }
+
+    /// The distance from a pole within which the sheet is within the resolution of the axis, so that
+    /// its normal is not known. The sheet leaves the axis along it where both poles are one point.
+    pub fn pole_blur(&self, resolution: N) -> N {
+        let along = (N::TWO * self.minor * resolution).sqrt();
+        match self.pole_height() {
+            Some(height) if height > N::ZERO => along.min(resolution * self.minor / height),
+            _ => along,
+        }
+    }
+
+    /// A measure of how far a point of either sheet is from the poles: positive on this sheet,
+    /// negative on the other, with a gradient of about one at the poles. The sphere through the
+    /// poles separates the sheets.
+    pub fn own_sheet<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
+        let [x, y, z] = self.frame.local(p);
+        let square = S::constant((self.minor - self.major) * self.reach());
+        let beyond = x.square() + y.square() + z.square() - square;
+        beyond.scale(N::HALF * self.major.signum() / self.minor)
+    }
 }
 
 /// A surface that can bound a part.
@@ -67,7 +138,7 @@ pub enum Surface<N: Float = f64> {
     Cone(Cone<N>),
     /// A sphere.
     Sphere(Sphere<N>),
-    /// A ring torus.
+    /// A torus.
     Torus(Torus<N>),
 }
 
@@ -158,7 +229,8 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The implicit polynomial of the surface; for a cone it vanishes on both nappes.
+    /// The implicit polynomial of the surface; it vanishes on both nappes of a cone, and on both
+    /// sheets of a torus.
     pub(crate) fn polynomial(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         let across = q.x * q.x + q.y * q.y;
@@ -175,7 +247,8 @@ impl<N: Float> Surface<N> {
     }
 
     /// The signed distance of a point, negative inside. It is exact for all five surfaces except
-    /// behind the apex of a cone, where it is a lower bound of the distance with the right sign.
+    /// behind the apex of a cone and behind a pole of a torus, where it is a lower bound of the
+    /// distance with the right sign.
     pub fn distance(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
         match self {
@@ -187,8 +260,8 @@ impl<N: Float> Surface<N> {
         }
     }
 
-    /// The outward unit normal at a point of the surface; at a cone's apex, the direction of the
-    /// axis.
+    /// The outward unit normal at a point of the surface; at a cone's apex and a torus's pole, the
+    /// direction of the axis.
     pub fn normal(&self, p: &Point3<N>) -> Vector3<N> {
         let f = self.frame();
         let q = f.coordinates(p);
@@ -205,6 +278,9 @@ impl<N: Float> Surface<N> {
             Self::Sphere(_) => q,
             Self::Torus(s) => {
                 let rho = q.x.hypot(q.y);
+                if rho == N::ZERO {
+                    return f.z * N::ONE.copysign(q.z);
+                }
                 let k = (rho - s.major) / rho;
                 Vector3::new(q.x * k, q.y * k, q.z)
             }
@@ -245,10 +321,21 @@ impl<N: Float> Surface<N> {
         }
     }
 
+    /// The points at which the surface has no normal: the apex of a cone, the poles of a torus.
+    pub fn apexes(&self) -> impl Iterator<Item = Point3<N>> + use<N> {
+        let (apex, torus) = match self {
+            Self::Cone(s) => (Some(s.frame.origin), None),
+            Self::Torus(s) => (None, Some(*s)),
+            Self::Plane(_) | Self::Cylinder(_) | Self::Sphere(_) => (None, None),
+        };
+        let poles = torus.into_iter().flat_map(|torus| torus.poles());
+        apex.into_iter().chain(poles)
+    }
+
     /// The parameters of a point on the surface: (x, y) of a plane; the angle and the height of a
     /// cylinder and of a cone (above the apex); longitude and latitude of a sphere; the angles
     /// about the axis and about the tube of a torus. Angles lie in [0, 2 pi), the latitude in
-    /// [-pi/2, pi/2].
+    /// [-pi/2, pi/2], the angle about a tube that reaches the axis in [-pi, pi].
     pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
         let q = self.frame().coordinates(p);
         match self {
@@ -257,7 +344,12 @@ impl<N: Float> Surface<N> {
             Self::Sphere(_) => [turn(q.y.atan2(q.x)), q.z.atan2(q.x.hypot(q.y))],
             Self::Torus(s) => {
                 let across = q.x.hypot(q.y) - s.major;
-                [turn(q.y.atan2(q.x)), turn(q.z.atan2(across))]
+                let about_tube = q.z.atan2(across);
+                let about_tube = match s.is_ring() {
+                    true => turn(about_tube),
+                    false => about_tube,
+                };
+                [turn(q.y.atan2(q.x)), about_tube]
             }
         }
     }
@@ -289,7 +381,7 @@ impl<N: Float> Surface<N> {
         match self {
             Self::Plane(_) => [None, None],
             Self::Cylinder(_) | Self::Cone(_) | Self::Sphere(_) => [Some(N::TAU), None],
-            Self::Torus(_) => [Some(N::TAU), Some(N::TAU)],
+            Self::Torus(s) => [Some(N::TAU), s.is_ring().then_some(N::TAU)],
         }
     }
 
@@ -317,6 +409,16 @@ pub fn turn<N: Float>(angle: N) -> N {
     if a >= N::TAU { N::ZERO } else { a }
 }
 
+/// Both sheets of a spindle torus about a frame, the inner one first, and a horn torus, for tests.
+#[cfg(test)]
+pub(crate) fn sheets(frame: Frame) -> [Torus; 3] {
+    [(-3.0, 5.0), (3.0, 5.0), (2.0, 2.0)].map(|(major, minor)| Torus {
+        frame,
+        major,
+        minor,
+    })
+}
+
 /// One surface of each kind about a frame, for tests.
 #[cfg(test)]
 pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 5] {
@@ -332,4 +434,63 @@ pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2])
             minor,
         }),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn frame() -> Frame {
+        let axis = Vector3::new(0.3, -0.4, 0.7).normalize();
+        Frame::about(Point3::new(1.0, -2.0, 0.5), axis)
+    }
+
+    #[test]
+    fn a_tube_that_reaches_the_axis_ends_in_poles() {
+        let [inner, outer, horn] = sheets(frame());
+        // 5² - 3² = 4².
+        for torus in [inner, outer] {
+            assert!(!torus.is_ring());
+            assert_eq!(torus.pole_height(), Some(4.0));
+            let poles: Vec<Point3<f64>> = torus.poles().collect();
+            for (pole, height) in poles.iter().zip([4.0, -4.0]) {
+                assert_relative_eq!(*pole, torus.frame.point(0.0, 0.0, height), epsilon = 1e-14);
+                assert!(Surface::Torus(torus).distance(pole).abs() < 1e-14);
+            }
+        }
+        assert_relative_eq!(inner.pole_angle(), 4.0_f64.atan2(3.0));
+        assert_relative_eq!(outer.pole_angle(), 4.0_f64.atan2(-3.0));
+        assert_eq!([inner, outer].map(|t| t.circumradius()), [4.0, 8.0]);
+        assert_eq!(horn.poles().count(), 1);
+        assert_relative_eq!(horn.pole_angle(), std::f64::consts::PI);
+        let ring = Torus {
+            major: 5.0,
+            minor: 3.0,
+            ..outer
+        };
+        assert!(ring.is_ring() && ring.poles().next().is_none());
+    }
+
+    #[test]
+    fn each_point_of_a_spindle_is_on_one_sheet() {
+        let [inner, outer, _] = sheets(frame());
+        for (own, other) in [(inner, outer), (outer, inner)] {
+            let surface = Surface::Torus(own);
+            for i in 0..12 {
+                for j in -9..10 {
+                    let v = own.pole_angle() * f64::from(j) / 9.5;
+                    let u = 0.1 + 0.5 * f64::from(i);
+                    let p = surface.point(u, v);
+                    assert_relative_eq!(surface.parameters(&p)[0], u, epsilon = 1e-12);
+                    assert_relative_eq!(surface.parameters(&p)[1], v, epsilon = 1e-12);
+                    assert!(surface.distance(&p).abs() < 1e-13);
+                    assert!(surface.polynomial(&p).abs() < 1e-10);
+                    assert!(own.own_sheet([p.x, p.y, p.z]) > 0.0);
+                    assert!(other.own_sheet([p.x, p.y, p.z]) < 0.0);
+                    assert!(Surface::Torus(other).distance(&p).abs() > 0.1);
+                }
+            }
+        }
+    }
 }

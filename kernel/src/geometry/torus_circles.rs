@@ -79,6 +79,9 @@ impl<N: Float> TorusCurve<N> {
             let (sin, cos) = angle.sin_cos();
             let frame = &circle.frame;
             let p = frame.point(circle.radius * cos, circle.radius * sin, N::ZERO);
+            if self.torus.own_sheet([p.x, p.y, p.z]) < N::ZERO {
+                continue;
+            }
             let slack = (error * circle.radius + resolution) / self.torus.minor;
             crossed.extend(self.passes(torus.parameters(&p), slack)?);
         }

@@ -3,7 +3,7 @@
 //! A plane is its own chart. A cylinder and a cone are projected along their axis, the cylinder as
 //! if it widened. A sphere is projected stereographically from a point outside the face. If the
 //! face has no outside, the centre is a point of the face, and a cap about it is left out. A torus
-//! is cut along a parallel and a circle of the tube, the seams, and unrolled. The seams exist in
+//! that reaches its axis is mapped to a sphere, latitude by latitude. Any other torus is cut along a parallel and a circle of the tube, the seams, and unrolled. The seams exist in
 //! the chart only, and are placed away from vertices and from points where edges turn back.
 
 use super::Accuracy;
@@ -30,6 +30,8 @@ pub(super) enum Chart {
     Sphere(Frame, f64, Option<f64>),
     /// Lengths along the parallels and the tube, measured from the seams.
     Torus(Torus, Seams),
+    /// Stereographic projection of the unit sphere to which a torus that reaches its axis is mapped.
+    Sheet(Torus, Frame, Option<f64>),
 }
 
 /// The angles about the axis and about the tube at which a torus is cut.
@@ -61,9 +63,14 @@ impl Chart {
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
-                let around = Around::new(brep, face, &s, lines);
+                let around = Around::new(brep, face, Globe::Sphere(s), lines);
                 let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
                 Self::Sphere(Frame::about(s.frame.origin, direction), s.radius, cap)
+            }
+            Surface::Torus(s) if !s.is_ring() => {
+                let around = Around::new(brep, face, Globe::Sheet(s), lines);
+                let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
+                Self::Sheet(s, Frame::about(Point3::origin(), direction), cap)
             }
             Surface::Torus(s) => {
                 let at = Seams::angles(brep, face, lines);
@@ -89,6 +96,10 @@ impl Chart {
                 let q = f.coordinates(p) / *radius;
                 (q.xy() / (1.0 - q.z)).into()
             }
+            Self::Sheet(s, f, _) => {
+                let q = f.components(&Globe::Sheet(*s).direction(p));
+                (q.xy() / (1.0 - q.z)).into()
+            }
             Self::Torus(s, seams) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
                 let from = |i: usize, x: f64| turn(x - seams.at[i]);
@@ -112,11 +123,21 @@ impl Chart {
                 let part = 2.0 * radius / (1.0 + square);
                 f.point(x.x * part, x.y * part, radius - part)
             }
+            Self::Sheet(s, f, _) => {
+                let part = 2.0 / (1.0 + x.coords.norm_squared());
+                let direction = f.point(x.x * part, x.y * part, 1.0 - part).coords;
+                Globe::Sheet(*s).point(&direction)
+            }
             Self::Torus(s, seams) => {
                 let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
                 Surface::Torus(*s).point(u, v)
             }
         }
+    }
+
+    /// The point of a torus that reaches its axis in a direction of the unit sphere.
+    pub fn globe_point(torus: &Torus, direction: &Vector3<f64>) -> Point3<f64> {
+        Globe::Sheet(*torus).point(direction)
     }
 
     /// The point of a side, between its ends, that is closest to the middle of a chart that has
@@ -126,10 +147,8 @@ impl Chart {
         let away = b - a;
         let part = -a.coords.dot(&away) / away.norm_squared();
         match self {
-            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) if part > 0.0 && part < 1.0 => {
-                Some(a + away * part)
-            }
-            _ => None,
+            Self::Plane(_) | Self::Torus(..) => None,
+            _ => (part > 0.0 && part < 1.0).then(|| a + away * part),
         }
     }
 
@@ -137,7 +156,7 @@ impl Chart {
     pub fn is_mirrored(&self, outward: Sense) -> bool {
         let own = match self {
             Self::Plane(_) | Self::Torus(..) => false,
-            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) => true,
+            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) | Self::Sheet(..) => true,
         };
         own != (outward == Sense::Against)
     }
@@ -155,11 +174,64 @@ fn points_of<'a>(
     })
 }
 
+/// A surface that is projected by way of the unit sphere.
+#[derive(Clone, Copy)]
+enum Globe {
+    Sphere(Sphere),
+    /// A torus that reaches its axis, with the poles mapped to the poles.
+    Sheet(Torus),
+}
+
+impl Globe {
+    /// The point of the surface in a direction.
+    fn point(&self, d: &Vector3<f64>) -> Point3<f64> {
+        match self {
+            Self::Sphere(s) => s.frame.origin + d * s.radius,
+            Self::Sheet(s) => {
+                let q = s.frame.components(d);
+                let latitude = q.z.atan2(q.x.hypot(q.y));
+                let v = latitude * (4.0 / TAU) * s.pole_angle();
+                Surface::Torus(*s).point(q.y.atan2(q.x), v)
+            }
+        }
+    }
+
+    /// The direction to which a point close to the surface is mapped.
+    fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Sphere(s) => (p - s.frame.origin).normalize(),
+            Self::Sheet(s) => {
+                let [u, v] = Surface::Torus(*s).parameters(p);
+                let latitude = (v / s.pole_angle()).clamp(-1.0, 1.0) * (TAU / 4.0);
+                let across = latitude.cos();
+                let local = Vector3::new(across * u.cos(), across * u.sin(), latitude.sin());
+                s.frame.vector(&local)
+            }
+        }
+    }
+
+    /// A radius of curvature that the surface has nowhere less than in proportion to its directions.
+    fn radius(&self) -> f64 {
+        match self {
+            Self::Sphere(s) => s.radius,
+            Self::Sheet(s) => s.reach().max(s.minor),
+        }
+    }
+
+    /// Whether a cap about a direction may be flat: it must not contain a pole of a sheet.
+    fn has_flat_cap(&self, d: &Vector3<f64>) -> bool {
+        match self {
+            Self::Sphere(_) => true,
+            Self::Sheet(s) => s.frame.z.dot(d).abs() < 0.5,
+        }
+    }
+}
+
 /// The points that the centre of a face's stereographic projection must avoid.
 struct Around<'a> {
     brep: &'a Brep,
     face: FaceId,
-    sphere: &'a Sphere,
+    globe: Globe,
     /// The chords of the face's edges.
     chords: Vec<[Point3<f64>; 2]>,
 }
@@ -173,7 +245,7 @@ struct SphereCentre {
 }
 
 impl<'a> Around<'a> {
-    fn new(brep: &'a Brep, face: FaceId, sphere: &'a Sphere, lines: &Polylines) -> Self {
+    fn new(brep: &'a Brep, face: FaceId, globe: Globe, lines: &Polylines) -> Self {
         let chords = brep.topology.edges_of(face).flat_map(|edge| {
             let nodes = lines.nodes(edge).windows(2);
             nodes.map(|pair| [0, 1].map(|i: usize| lines.points[pair[i].point as usize]))
@@ -181,7 +253,7 @@ impl<'a> Around<'a> {
         Self {
             brep,
             face,
-            sphere,
+            globe,
             chords: chords.collect(),
         }
     }
@@ -193,10 +265,15 @@ impl<'a> Around<'a> {
             let cap = None;
             return SphereCentre { direction, cap };
         }
-        let z = self.farthest(&mut spread()).unwrap_or_else(Vector3::z);
-        let radius = self.sphere.radius;
+        let mut flat = spread().filter(|d| self.globe.has_flat_cap(d));
+        let z = self.farthest(&mut flat).unwrap_or_else(Vector3::z);
+        let radius = self.globe.radius();
         let clear = (self.away(&z) - accuracy.deviation) / (2.0 * radius);
-        let flat = TAU / f64::from(steps_round(radius, &accuracy.part(0.5)));
+        let mut flat = TAU / f64::from(steps_round(radius, &accuracy.part(0.5)));
+        if let Globe::Sheet(_) = self.globe {
+            // A latitude is up to two angles about the tube.
+            flat *= 0.5;
+        }
         SphereCentre {
             direction: z,
             cap: Some(flat.min(clear)),
@@ -208,11 +285,9 @@ impl<'a> Around<'a> {
         if self.chords.is_empty() {
             return None;
         }
-        let Sphere { frame, radius } = self.sphere;
         let locator = FaceLocator::from_face(self.brep, self.face, resolution);
-        let outside = |d: &Vector3<f64>| {
-            locator.place(&(frame.origin + d * *radius)) == PointLocation::Outside
-        };
+        let outside =
+            |d: &Vector3<f64>| locator.place(&self.globe.point(d)) == PointLocation::Outside;
         // Points close to the boundary, to its right, for faces that cover almost the whole sphere.
         let nearby = locator.arcs().iter().flat_map(|a| {
             let t = 0.5 * (a.range[0] + a.range[1]);
@@ -222,7 +297,7 @@ impl<'a> Around<'a> {
             let size = (a.curve.point(a.range[0]) - p).norm();
             (1..NEAREST).map(move |k| {
                 let nearby = p + right * (size / f64::from(1 << k));
-                (nearby - frame.origin).normalize()
+                self.globe.direction(&nearby)
             })
         });
         self.farthest(&mut spread().filter(outside))
@@ -236,9 +311,9 @@ impl<'a> Around<'a> {
             .map(|(_, d)| d)
     }
 
-    /// The distance of the sphere's point in a direction from the edges.
+    /// The distance of the surface's point in a direction from the edges.
     fn away(&self, d: &Vector3<f64>) -> f64 {
-        let p = self.sphere.frame.origin + d * self.sphere.radius;
+        let p = self.globe.point(d);
         let apart = self.chords.iter().map(|[a, b]| off_chord(&p, a, b));
         apart.fold(f64::INFINITY, f64::min)
     }

@@ -46,10 +46,11 @@ impl ChordTest<'_> {
             .then_some(nearest)
     }
 
-    /// Whether a point is a cone's apex, where there is no normal.
+    /// Whether a point is a cone's apex or a torus's pole, where there is no normal.
     pub fn is_apex(&self, p: &Point3<f64>) -> bool {
         let near = self.accuracy.deviation * APEX;
-        matches!(self.surface, Surface::Cone(c) if (c.frame.origin - p).norm() <= near)
+        let mut apexes = self.surface.apexes();
+        apexes.any(|apex| (apex - p).norm() <= near)
     }
 }
 

@@ -1,6 +1,8 @@
 //! The constrained Delaunay triangulation of a face in its chart, with the chords of its edges as
 //! constraints.
 
+mod extra_points;
+
 use super::Accuracy;
 use super::charts::{Chart, Seams, signed_turn};
 use super::chord_test::ChordTest;
@@ -9,11 +11,9 @@ use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId, Sense};
 use crate::geometry::surface::{Surface, Torus};
 use crate::number::bisection::bisect;
-use nalgebra::{Point2, Point3};
+use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
-use spade::{
-    ConstrainedDelaunayTriangulation, HasPosition, PositionInTriangulation, Triangulation,
-};
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
@@ -379,7 +379,17 @@ impl<'a> Builder<'a> {
                 self.add_middle();
                 self.add_cap(frame.point(0.0, 0.0, *radius), *cap);
             }
-            _ => {}
+            Chart::Sheet(torus, frame, cap) => {
+                for pole in torus.poles() {
+                    self.add_pole(&pole);
+                }
+                self.add_point(Point2::origin());
+                if let Some(cap) = cap {
+                    let centre = Chart::globe_point(torus, &frame.z);
+                    self.add_cap(centre, *cap);
+                }
+            }
+            Chart::Plane(_) | Chart::Cylinder(..) => {}
         }
         self.divide_split();
         self.divide_around_corners();
@@ -387,46 +397,6 @@ impl<'a> Builder<'a> {
             Ok(self.domain)
         } else {
             Err(self.divisions)
-        }
-    }
-
-    /// Adds the apex, or the point opposite to the centre of the projection, which prevents small
-    /// triangles from reaching around the sphere. A chord through that point serves as well.
-    fn add_middle(&mut self) {
-        let net = &self.domain.net;
-        let at_middle = |c: &Corner| {
-            c.at == Point2::origin() || self.fit.is_apex(&self.lines.points[c.point as usize])
-        };
-        let known = net.vertices().any(|v| at_middle(v.data()));
-        let on_chord = match net.locate(spade::Point2::new(0.0, 0.0)) {
-            PositionInTriangulation::OnEdge(edge) => net.is_constraint_edge(edge.as_undirected()),
-            _ => false,
-        };
-        if !known && !on_chord {
-            let middle = self.lines.add(self.fit.chart.lift(&Point2::origin()));
-            self.corner(Point2::origin(), middle);
-        }
-    }
-
-    /// Adds the rim of a cap about the centre of the projection, and the triangles of the cap.
-    fn add_cap(&mut self, centre: Point3<f64>, wide: f64) {
-        let centre = self.lines.add(centre);
-        let away = 1.0 / (0.5 * wide).tan();
-        let mut rim = Vec::new();
-        for k in 0..RIM {
-            let (sin, cos) = (TAU * f64::from(k) / f64::from(RIM)).sin_cos();
-            let at = Point2::new(away * cos, away * sin);
-            let point = self.lines.add(self.fit.chart.lift(&at));
-            let corner = self.corner(at, point);
-            self.crowded |= corner.is_none();
-            rim.extend(corner.map(|c| (c, point)));
-        }
-        for (k, &(from, a)) in rim.iter().enumerate() {
-            let (to, b) = rim[(k + 1) % rim.len()];
-            if self.domain.net.can_add_constraint(from, to) {
-                self.domain.net.add_constraint(from, to);
-            }
-            self.domain.cap.push([b, a, centre]);
         }
     }
 
@@ -564,9 +534,6 @@ impl<'a> Builder<'a> {
         marks
     }
 }
-
-/// The number of sides of a cap, whose triangles are congruent.
-const RIM: u32 = 6;
 
 /// The distance from the end of a chord, relative to its length, within which a node is at that
 /// end.

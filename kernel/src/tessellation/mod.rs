@@ -15,7 +15,6 @@ mod refine;
 
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
-use crate::geometry::surface::Surface;
 use charts::Chart;
 use edges::{Division, Polylines};
 use face_triangulation::FaceTriangulation;
@@ -179,8 +178,8 @@ impl Mesh {
         self.points = kept;
     }
 
-    /// The outward unit normals of the face at the corners of a triangle. At a cone's apex, that of
-    /// the ruling through the middle of the opposite side.
+    /// The outward unit normals of the face at the corners of a triangle. At a cone's apex or a
+    /// torus's pole, that at the middle of the opposite side.
     ///
     /// # Panics
     /// The mesh has no such points, or the boundary no such face.
@@ -188,13 +187,13 @@ impl Mesh {
         let corners = triangle.corners.map(|c| self.points[c as usize]);
         [0, 1, 2].map(|k: usize| {
             let across = nalgebra::center(&corners[(k + 1) % 3], &corners[(k + 2) % 3]);
-            let on = match brep.surface(triangle.face) {
-                Surface::Cone(cone) => {
-                    let from = |p: &Point3<f64>| (p - cone.frame.origin).norm();
-                    let is_apex = from(&corners[k]) <= from(&across) * chord_test::APEX;
-                    if is_apex { across } else { corners[k] }
-                }
-                _ => corners[k],
+            let is_at = |apex: Point3<f64>| {
+                let from = |p: &Point3<f64>| (p - apex).norm();
+                from(&corners[k]) <= from(&across) * chord_test::APEX
+            };
+            let on = match brep.surface(triangle.face).apexes().any(is_at) {
+                true => across,
+                false => corners[k],
             };
             brep.outward(triangle.face, &on).normalize()
         })

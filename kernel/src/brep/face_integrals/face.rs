@@ -3,6 +3,7 @@
 use super::density::{Density, add};
 use super::ground::{Ground, Middle};
 use super::outline::boundary_sum;
+use super::pole_turns::pole_turns;
 use super::{Amid, Moments};
 use crate::brep::Brep;
 use crate::brep::arcs::Arcs;
@@ -34,7 +35,8 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
     let (base, middle) = match &surface {
         Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (N::ZERO, N::ZERO),
         Surface::Sphere(_) => (-N::PI / N::TWO, N::ZERO),
-        Surface::Torus(t) => (-N::PI, opposite_parallel(brep, t, &coedges)),
+        Surface::Torus(t) if t.is_ring() => (-N::PI, opposite_parallel(brep, t, &coedges)),
+        Surface::Torus(t) => (-t.pole_angle(), N::ZERO),
     };
     let ground = Ground {
         surface,
@@ -60,7 +62,18 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
             let holds = holds_far(brep, face, amid, sum[0] / whole[0], &opposite);
             with_far(sum, whole, holds)
         }
-        Surface::Torus(t) => torus_moments(brep, face, &coedges, t, &d),
+        Surface::Torus(t) if t.is_ring() => torus_moments(brep, face, &coedges, t, &d),
+        Surface::Torus(t) => {
+            let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
+            let whole = d.between(base, -base);
+            let turns = pole_turns(brep, &surface, &coedges, brep.sense(face));
+            let passes_upper = turns.iter().any(|turn| turn.v.is_above_zero());
+            let holds = match (passes_upper, t.poles().next()) {
+                (false, Some(upper)) => holds_far(brep, face, amid, sum[0] / whole[0], &upper),
+                _ => Some(false),
+            };
+            with_far(sum, whole, holds)
+        }
     };
     FaceSum {
         moments,

@@ -3,8 +3,9 @@
 use super::Moments;
 use super::density::{Density, add};
 use super::ground::{OnEdge, RoundedEdge};
+use super::pole_turns::pole_turns;
 use crate::brep::Brep;
-use crate::brep::topology::{CoedgeId, FaceId};
+use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::geometry::surface::Surface;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -21,7 +22,7 @@ pub(super) fn boundary_sum<N: Float>(
     let loops = brep.topology.face(face).loops.iter();
     let rings = loops.map(|&l| &brep.topology.ring(l).coedges);
     let sums: Vec<LoopSum<N>> = rings
-        .map(|ring| loop_sum(brep, ring, density, marks))
+        .map(|ring| loop_sum(brep, ring, brep.sense(face), density, marks))
         .collect();
     let round = || sums.iter().filter(|s| !s.turns.is_exactly(N::ZERO));
     let mut total = sums.iter().fold([N::ZERO; 5], |all, s| add(all, s.sum));
@@ -57,6 +58,7 @@ struct LoopSum<N: Float> {
 fn loop_sum<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
+    side: Sense,
     density: &Density<'_, N>,
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> LoopSum<N> {
@@ -96,6 +98,13 @@ fn loop_sum<N: Float>(
             for (s, v) in total.iter_mut().zip(part) {
                 *s += sign * v;
             }
+        }
+    }
+    for turn in pole_turns(brep, &density.ground.surface, coedges, side) {
+        let along = density.over([turn.from, turn.from + turn.by], [start, turn.v]);
+        let [a, v, x, y, z] = along;
+        for (s, part) in total.iter_mut().zip([a, v, x, y, z, turn.by]) {
+            *s += part;
         }
     }
     let [a, v, x, y, z, way] = total;

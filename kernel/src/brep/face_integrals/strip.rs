@@ -119,7 +119,7 @@ fn waves<N: Float>(m: N, d: N) -> Waves<N> {
 mod tests {
     use super::*;
     use crate::geometry::frame::Frame;
-    use crate::geometry::surface::of_every_kind;
+    use crate::geometry::surface::{Torus, of_every_kind, sheets};
     use crate::number::quadrature::adaptive;
     use approx::assert_relative_eq;
 
@@ -131,7 +131,16 @@ mod tests {
         );
         let surfaces = of_every_kind(frame, 1.5, [3.0, 1.25]);
         let reference = Point3::new(0.2, 0.1, -0.7);
-        for (surface, u) in surfaces.iter().zip([0.3, 1.1, 2.0, 4.0, 5.5]) {
+        // The strip ends below the upper pole of each sheet.
+        let [inner, outer, horn] = sheets(frame);
+        let inner = Torus {
+            major: -1.0,
+            ..inner
+        };
+        let sheets = [inner, outer, horn].map(Surface::Torus);
+        let surfaces = surfaces.into_iter().chain(sheets);
+        for (surface, u) in surfaces.zip([0.3, 1.1, 2.0, 4.0, 5.5, 0.2, 3.3, 5.9]) {
+            let surface = &surface;
             let density = |v: f64| {
                 let step = 1e-5;
                 let p = surface.point(u, v);

@@ -97,9 +97,19 @@ impl<N: Float> FaceLocator<'_, N> {
                 let down = SurfacePath::ruling_through(self.surface, p, Sense::Along);
                 walks.extend(down);
             }
-            Surface::Torus(s) => {
+            Surface::Torus(s) if s.is_ring() => {
                 walks.extend(parallel());
                 walks.push(SurfacePath::tube(s, p, Sense::Along));
+            }
+            Surface::Torus(s) => {
+                walks.extend(parallel());
+                let both = [Sense::Along, Sense::Against];
+                let both = both.map(|sense| SurfacePath::meridian(s, p, sense));
+                let leads_in = |walk: &SurfacePath<N>| walk.direction(p).dot(&towards);
+                walks.extend(
+                    both.into_iter()
+                        .filter(|walk| leads_in(walk).reaches(N::ZERO)),
+                );
             }
         }
         walks

@@ -152,7 +152,11 @@ fn ring_on_tube<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) ->
     let at = place(&pair.b.surface.frame().origin);
     let coincide = |question, relation| predicates.coincide(question, pair.how(relation), at);
     let outer = [true, false].into_iter();
-    let mut outer = outer.filter(|&o| coincide("rim on tube", PairMeasure::RimOfTube(o)));
+    // A torus that reaches its axis has no inner rim.
+    let is_ring = matches!(pair.b.surface, Surface::Torus(o) if o.is_ring());
+    let mut outer = outer.filter(|&outer| {
+        (outer || is_ring) && coincide("rim on tube", PairMeasure::RimOfTube(outer))
+    });
     let outer = outer.next()?;
     let on = coincide("centre on spine", PairMeasure::OffSpine)
         && coincide("axis along spine", PairMeasure::AcrossSpine);

@@ -12,7 +12,7 @@ mod torus;
 
 use super::curve::Curve;
 use super::region_of_interest::RegionOfInterest;
-use super::surface::{Cone, Surface, SurfaceKind};
+use super::surface::{Cone, Surface, SurfaceKind, Torus};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
 use super::trace::BranchPosition;
 use super::unresolved::Unresolved;
@@ -25,6 +25,7 @@ use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::predicates::Predicates;
 use crate::number::roots::{Roots, isolate};
+use contact::meridian;
 use nalgebra::Point3;
 
 /// One component of an intersection.
@@ -38,6 +39,24 @@ pub struct Branch<N: Float = f64> {
     pub closed: bool,
     /// Whether the surfaces are tangent along all of it.
     pub tangent: bool,
+}
+
+impl<N: Float> Branch<N> {
+    /// A parameter of the curve, moved to an end of the range that it passes by rounding or a
+    /// whole period only.
+    fn in_range(&self, t: N) -> N {
+        let Some(period) = self.curve.period().filter(|_| !self.closed) else {
+            return t;
+        };
+        let [lo, hi] = self.range;
+        let turned = [-period, N::ZERO, period].map(|turn| t + turn);
+        let clamped = turned.map(|t| (t, t.max(lo).min(hi)));
+        let away = |(t, end): &(N, N)| (*t - *end).abs();
+        let best = clamped
+            .into_iter()
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+        best.map_or(t, |(_, end)| end)
+    }
 }
 
 /// A singular point of an intersection: a self-crossing, a cusp or an isolated point.
@@ -101,12 +120,32 @@ impl<N: Float> SurfaceIntersection<N> {
         }
     }
 
+    /// Adds the circle of a torus's tube at the angle θ, or the part of it from pole to pole.
+    fn add_meridian(
+        &mut self,
+        torus: &Torus<N>,
+        theta: N,
+        tangent: bool,
+        extent: &RegionOfInterest<N>,
+    ) {
+        let added = self.branches.len();
+        self.add(Curve::Circle(meridian(torus, theta)), tangent, extent);
+        let end = torus.pole_angle();
+        if end >= N::PI {
+            return;
+        }
+        for branch in &mut self.branches[added..] {
+            branch.range = [-end, end];
+            branch.closed = false;
+        }
+    }
+
     /// Adds a singular point, with its parameter on each branch through it.
     fn cross_at(&mut self, point: Point3<N>, predicates: &Predicates) {
         let on = self.branches.iter().enumerate();
         let on = on.map(|(i, branch)| BranchPosition {
             branch: i,
-            t: branch.curve.parameter(&point),
+            t: branch.in_range(branch.curve.parameter(&point)),
         });
         let passed = |on: &BranchPosition<N>| {
             let there = self.branches[on.branch].curve.point(on.t);
@@ -222,23 +261,54 @@ fn positive_parts<N: Float>(
         .collect()
 }
 
-/// The parts of a curve that lie on the surface; for a cone, on its one nappe.
-fn nappe_parts<N: Float>(
+/// The parts of a curve on the implicit polynomial of a surface that lie on the surface: on the one
+/// nappe of a cone, or the one sheet of a torus.
+fn parts_on<N: Float>(
     curve: &Curve<N>,
     range: [N; 2],
     surface: &Surface<N>,
     resolution: N,
 ) -> Vec<[N; 2]> {
-    let Surface::Cone(c) = surface else {
-        return vec![range];
-    };
-    positive_parts(curve, range, &AboveApex { curve, cone: c }, resolution)
+    match surface {
+        Surface::Cone(cone) => positive_parts(curve, range, &AboveApex { curve, cone }, resolution),
+        Surface::Torus(torus) if !torus.is_ring() => {
+            positive_parts(curve, range, &OnSheet { curve, torus }, resolution)
+        }
+        _ => vec![range],
+    }
 }
 
 /// The height of a curve above a cone's apex, along the axis.
 struct AboveApex<'a, N: Float = f64> {
     curve: &'a Curve<N>,
     cone: &'a Cone<N>,
+}
+
+/// The distance of a curve from the poles of a torus, positive on its sheet.
+struct OnSheet<'a, N: Float = f64> {
+    curve: &'a Curve<N>,
+    torus: &'a Torus<N>,
+}
+
+impl<N: Float> Function<N> for OnSheet<'_, N> {
+    fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
+        self.torus.own_sheet(self.curve.jet_over(t))
+    }
+
+    fn reach(&self, t: Interval<N>) -> Interval<N> {
+        match self.curve.box_over(t) {
+            Some(p) => self.torus.own_sheet(p),
+            None => Interval::ENTIRE,
+        }
+    }
+
+    fn at(&self, t: N) -> Jet<N> {
+        self.torus.own_sheet(self.curve.jet(t))
+    }
+
+    fn value(&self, t: N) -> N {
+        self.torus.own_sheet(self.curve.point(t).into())
+    }
 }
 
 impl<N: Float> Function<N> for AboveApex<'_, N> {

@@ -1,8 +1,8 @@
 //! Intersection of a torus with another surface: circles if they are coaxial, along a meridian, or
 //! Villarceau circles; otherwise a curve in the torus's angles.
 
-use super::contact::{contacts, meridian, parallel};
-use super::{Branch, IntersectionError, Node, SurfaceIntersection, nappe_parts, place, same_line};
+use super::contact::{Contact, contacts, parallel};
+use super::{Branch, IntersectionError, Node, SurfaceIntersection, parts_on, place, same_line};
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::curve_surface::lies_on;
@@ -22,7 +22,7 @@ pub(super) fn torus_torus<N: Float>(
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    if o.major + o.minor < t.major + t.minor {
+    if o.reach() < t.reach() {
         torus_with(o, &pair.turned(), predicates)
     } else {
         torus_with(t, pair, predicates)
@@ -56,7 +56,10 @@ pub(super) fn torus_with<N: Float>(
             point: Surface::Torus(*t).point(theta, phi),
             on: Vec::new(),
         }));
-        meeting.add(Curve::Circle(contact.circle(t)), true, extent);
+        match contact {
+            Contact::Meridian(theta) => meeting.add_meridian(t, *theta, true, extent),
+            Contact::Rim(_) => meeting.add(Curve::Circle(contact.circle(t)), true, extent),
+        }
     }
     Ok(meeting)
 }
@@ -80,7 +83,10 @@ fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N 
             let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
             N::TWO * c.sin * away
         }
-        Surface::Torus(c) => N::from_f64(8.0) * c.major * c.major * c.minor,
+        Surface::Torus(c) => {
+            let out = c.major.abs().max(N::HALF * c.reach());
+            N::from_f64(8.0) * c.major.abs() * out * c.minor
+        }
     };
     s.polynomial(p) / slope
 }
@@ -99,12 +105,17 @@ fn traced<N: Float>(
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let traced = trace(t, form, predicates.resolution())?;
+    let own = Surface::Torus(*t);
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
-        let p = Surface::Torus(*t).point(*theta, *phi);
+        let p = own.point(*theta, *phi);
+        if t.own_sheet([p.x, p.y, p.z]) < -predicates.resolution::<N>() {
+            continue;
+        }
         predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
     }
-    // The form vanishes on both nappes of a cone. Each branch is clipped to the cone's own nappe.
+    // The form vanishes on both nappes of a cone and on both sheets of a torus. Each branch is
+    // clipped to the surfaces' own.
     let mut parts: Vec<Vec<BranchPart<N>>> = Vec::new();
     let mut singular = traced.singular;
     for (b, branch) in traced.branches.into_iter().enumerate() {
@@ -124,7 +135,7 @@ fn traced<N: Float>(
         let passes: Vec<N> = passes.into_iter().map(|at| *at).collect();
         let whole = [N::ZERO, curve.period().unwrap_or(N::ZERO)];
         let mut kept = Vec::new();
-        for range in nappe_parts(&curve, whole, other, predicates.resolution()) {
+        for range in parts_on_both(&curve, whole, [&own, other], predicates) {
             let range = range.map(|end| at_pass(&curve, end, &passes, predicates));
             kept.push(BranchPart {
                 branch: meeting.branches.len(),
@@ -141,8 +152,9 @@ fn traced<N: Float>(
         parts.push(kept);
     }
     for s in singular {
-        let point = Surface::Torus(*t).point(s.angles[0], s.angles[1]);
-        if matches!(other, Surface::Cone(_)) && !predicates.within(other.distance(&point)) {
+        let point = own.point(s.angles[0], s.angles[1]);
+        let lies_on = |s: &Surface<N>| !has_twin(s) || predicates.within(s.distance(&point));
+        if !lies_on(&own) || !lies_on(other) {
             continue;
         }
         let mut on = Vec::new();
@@ -159,15 +171,36 @@ fn traced<N: Float>(
         }
         meeting.nodes.push(Node { point, on });
     }
-    if let Surface::Cone(c) = other
-        && predicates.within(Surface::Torus(*t).distance(&c.frame.origin))
-    {
-        meeting.nodes.push(Node {
-            point: c.frame.origin,
+    for [a, b] in [[&own, other], [other, &own]] {
+        let common = a.apexes().filter(|p| predicates.within(b.distance(p)));
+        meeting.nodes.extend(common.map(|point| Node {
+            point,
             on: Vec::new(),
-        });
+        }));
     }
     Ok(meeting)
+}
+
+/// Whether the surface is one of two on which its implicit polynomial vanishes.
+fn has_twin<N: Float>(surface: &Surface<N>) -> bool {
+    match surface {
+        Surface::Cone(_) => true,
+        Surface::Torus(torus) => !torus.is_ring(),
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) => false,
+    }
+}
+
+/// The parts of a curve on the implicit polynomials of two surfaces that lie on both.
+fn parts_on_both<N: Float>(
+    curve: &Curve<N>,
+    range: [N; 2],
+    surfaces: [&Surface<N>; 2],
+    predicates: &Predicates,
+) -> Vec<[N; 2]> {
+    let parts = |range, s: &Surface<N>| parts_on(curve, range, s, predicates.resolution());
+    let first = parts(range, surfaces[0]);
+    let both = first.into_iter().flat_map(|part| parts(part, surfaces[1]));
+    both.collect()
 }
 
 /// The circle that a branch is, if it is one. A sphere centred on a torus's spine intersects it in
@@ -246,7 +279,12 @@ fn coaxial<N: Float>(
     };
     let mut meeting = SurfaceIntersection::nothing();
     for ProfilePoint { at: p, tangent } in points {
-        if p.x > N::ZERO {
+        if !t.is_ring() && predicates.within(p.x) {
+            meeting.nodes.push(Node {
+                point: t.frame.point(N::ZERO, N::ZERO, p.y),
+                on: Vec::new(),
+            });
+        } else if p.x > N::ZERO {
             meeting.add(Curve::Circle(parallel(t, p.y, p.x)), tangent, pair.extent);
         }
     }
@@ -357,9 +395,15 @@ fn central_plane<N: Float>(
         let q = t.frame.components(&n);
         let theta = q.y.atan2(q.x) + N::TAU / N::from_f64(4.0);
         for theta in [theta, theta + N::TAU / N::TWO] {
-            meeting.add(Curve::Circle(meridian(t, theta)), false, extent);
+            meeting.add_meridian(t, theta, false, extent);
+        }
+        for pole in t.poles() {
+            meeting.cross_at(pole, predicates);
         }
         return Some(meeting);
+    }
+    if !t.is_ring() {
+        return None;
     }
     let across = n.cross(&t.frame.z);
     let slope = across.length();

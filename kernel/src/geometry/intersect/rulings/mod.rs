@@ -10,7 +10,7 @@ mod single;
 
 use self::difference::Difference;
 use super::plane::{plane_cone, plane_cylinder};
-use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, nappe_parts, place};
+use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, parts_on, place};
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
 use crate::geometry::quadric_curve::Ruled;
@@ -232,7 +232,7 @@ impl<'a, N: Float> Rulings<'a, N> {
         range: [N; 2],
         predicates: &Predicates,
     ) -> Vec<[N; 2]> {
-        nappe_parts(curve, range, self.other, predicates.resolution())
+        parts_on(curve, range, self.other, predicates.resolution())
     }
 
     /// Whether the heights that `conics` gives over each ruling lie on the other surface.

@@ -1,0 +1,131 @@
+//! The turns of a loop at the poles of a torus that reaches its axis.
+//!
+//! A pole is one point, and a whole segment of the parameter plane. A loop that passes through it
+//! runs along the part of that segment that its face covers.
+
+use crate::brep::Brep;
+use crate::brep::topology::{CoedgeId, Sense};
+use crate::geometry::curve::Curve;
+use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::vector::Length;
+use crate::number::float::Float;
+use crate::number::predicates::Compare;
+use nalgebra::{Point3, Vector3};
+
+/// The part of a pole's segment along which a loop runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PoleTurn<N: Float> {
+    /// The angle about the tube at the pole.
+    pub v: N,
+    /// The angle about the axis where the loop arrives, and by how much it turns.
+    pub from: N,
+    pub by: N,
+}
+
+/// The distance of a vertex from a pole, relative to the torus, below which it is the pole.
+const AT_POLE: f64 = 1.0 / (1 << 30) as f64;
+
+/// The sine of the angle between an edge and the axis below which its direction does not give the
+/// angle about the axis, and the fraction of the edge from its end at which its point gives it.
+const UPRIGHT: f64 = 1.0 / (1 << 10) as f64;
+
+/// The fraction of an edge from its end at which it shows which pole it approaches.
+const NEAR_POLE: f64 = 1.0 / 8.0;
+
+/// The turns of a loop at the poles of its surface, in order. `side` is the sense of the face's
+/// outward normal relative to the surface's.
+pub(super) fn pole_turns<N: Float>(
+    brep: &Brep<N>,
+    surface: &Surface<N>,
+    coedges: &[CoedgeId],
+    side: Sense,
+) -> Vec<PoleTurn<N>> {
+    let Surface::Torus(torus) = surface else {
+        return Vec::new();
+    };
+    let followers = coedges.iter().cycle().skip(1);
+    let pairs = coedges.iter().zip(followers);
+    let turns = pairs.filter_map(|(&arriving, &leaving)| {
+        let [_, vertex] = brep.topology.run(arriving)?;
+        if !is_pole(torus, &brep.point(vertex)) {
+            return None;
+        }
+        let [arrival, departure] = [
+            CoedgeEnd::last(brep, arriving),
+            CoedgeEnd::first(brep, leaving),
+        ];
+        // Both poles of a horn torus are one point.
+        let is_upper = arrival.inside(torus, NEAR_POLE).z.is_above_zero();
+        let [from, to] = [arrival, departure].map(|end| end.angle(torus));
+        // Seen from outside, the face is to the left: it lies behind a turn at the upper pole, and
+        // ahead of one at the lower pole.
+        let is_backward = is_upper == (side == Sense::Along);
+        let edge = |c: CoedgeId| brep.topology.coedge(c).edge;
+        let is_slit = arriving != leaving && edge(arriving) == edge(leaving);
+        let sector = match is_backward {
+            _ if is_slit => N::TAU,
+            true => (from - to).rem_euclid(N::TAU),
+            false => (to - from).rem_euclid(N::TAU),
+        };
+        let pole = torus.pole_angle();
+        Some(PoleTurn {
+            v: if is_upper { pole } else { -pole },
+            from,
+            by: if is_backward { -sector } else { sector },
+        })
+    });
+    turns.collect()
+}
+
+fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
+    let near = torus.minor * N::from_f64(AT_POLE);
+    let mut poles = torus.poles();
+    poles.any(|pole| (pole - p).length().is_within(near))
+}
+
+/// An end of a coedge.
+struct CoedgeEnd<'a, N: Float> {
+    curve: &'a Curve<N>,
+    /// The parameter there, and at the other end.
+    at: N,
+    other: N,
+}
+
+impl<'a, N: Float> CoedgeEnd<'a, N> {
+    fn first(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+        let coedge = brep.topology.coedge(coedge);
+        let [lo, hi] = brep.range(coedge.edge);
+        let [at, other] = match coedge.sense {
+            Sense::Along => [lo, hi],
+            Sense::Against => [hi, lo],
+        };
+        let curve = brep.curve(coedge.edge);
+        Self { curve, at, other }
+    }
+
+    fn last(brep: &'a Brep<N>, coedge: CoedgeId) -> Self {
+        let Self { curve, at, other } = Self::first(brep, coedge);
+        let (at, other) = (other, at);
+        Self { curve, at, other }
+    }
+
+    /// The coordinates in the torus's frame of the point at a fraction of the coedge from here.
+    fn inside(&self, torus: &Torus<N>, fraction: f64) -> Vector3<N> {
+        let t = self.at + (self.other - self.at) * N::from_f64(fraction);
+        torus.frame.coordinates(&self.curve.point(t))
+    }
+
+    /// The angle about the axis at which the coedge arrives at a pole, or leaves it.
+    fn angle(&self, torus: &Torus<N>) -> N {
+        let into = (self.other - self.at).signum();
+        let leaving = torus
+            .frame
+            .components(&(self.curve.tangent(self.at) * into));
+        let is_slanted = leaving.xy().length().is_beyond(N::from_f64(UPRIGHT));
+        let direction = match is_slanted {
+            true => leaving,
+            false => self.inside(torus, UPRIGHT),
+        };
+        direction.y.atan2(direction.x)
+    }
+}

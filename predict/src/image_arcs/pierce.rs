@@ -124,7 +124,7 @@ fn searched(
     hint: f64,
 ) -> Option<f64> {
     let nearest = -q.dot(w);
-    let reach = s.major + s.minor;
+    let reach = s.circumradius();
     let half2 = reach * reach - (q + w * nearest).norm_squared();
     if half2 <= 0.0 {
         return None;

@@ -15,6 +15,7 @@ use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::trace::trace;
 use premio_kernel::geometry::unresolved::Unresolved;
+use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
@@ -27,8 +28,9 @@ use std::f64::consts::TAU;
 pub struct Limb {
     /// The curve.
     pub curve: Curve,
-    /// Where it starts, if it does: a cone's at the apex.
-    pub from: Option<f64>,
+    /// Where it ends in an apex: at the start of a cone's limb, and at the poles of a torus. Beyond a
+    /// pole it lies on the torus's other sheet.
+    pub apexes: Vec<f64>,
     /// Where it crosses itself, on a torus.
     pub nodes: Vec<f64>,
 }
@@ -37,7 +39,7 @@ impl Limb {
     fn new(curve: Curve) -> Self {
         Self {
             curve,
-            from: None,
+            apexes: Vec::new(),
             nodes: Vec::new(),
         }
     }
@@ -124,7 +126,7 @@ fn cone_limbs(s: &Cone, sight: &ViewRay, resolution: f64, tilt: f64) -> Vec<Limb
         .map(|u| {
             let radial = s.frame.x * u.cos() + s.frame.y * u.sin();
             Limb {
-                from: Some(0.0),
+                apexes: vec![0.0],
                 ..Limb::new(Curve::Line(Line {
                     origin: s.frame.origin,
                     direction: s.frame.z * s.cos + radial * s.sin,
@@ -169,6 +171,11 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
         .into_iter()
         .map(|c| Limb::new(Curve::Toric(Box::new(c))))
         .collect();
+    if !s.is_ring() {
+        for limb in &mut limbs {
+            limb.apexes = pole_passes(s, &limb.curve, resolution);
+        }
+    }
     for on in traced.singular.iter().flat_map(|s| &s.on) {
         if let Some(limb) = limbs.get_mut(on.branch) {
             limb.nodes.push(on.t);
@@ -177,7 +184,18 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
     Ok(limbs)
 }
 
-/// Seen from its axis, a torus has two parallel circles as limbs.
+/// The parameters at which a closed curve passes through the poles of a torus.
+fn pole_passes(s: &Torus, curve: &Curve, resolution: f64) -> Vec<f64> {
+    let f = |t: Interval| s.own_sheet(curve.jet_over(t));
+    let period = curve.period().unwrap_or(0.0);
+    match isolate(&f, &curve.breaks(0.0, period), resolution) {
+        Roots::Everywhere => Vec::new(),
+        Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
+    }
+}
+
+/// Seen from its axis, a torus has two parallel circles as limbs, of which its sheet may have one
+/// or none.
 fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Limb>> {
     let angles = match sight {
         LocalSight::Direction(d) => {
@@ -199,11 +217,14 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Lim
             radius: s.major + s.minor * phi.cos(),
         }))
     };
-    Some(angles.map(circle).to_vec())
+    let is_on_sheet = |phi: &f64| (s.major + s.minor * phi.cos()).is_beyond(resolution);
+    let angles = angles.into_iter().filter(is_on_sheet);
+    Some(angles.map(circle).collect())
 }
 
 /// For parallel sight perpendicular to its axis, cos φ cos(θ - α) = 0: the circles at the top and
-/// at the bottom, and two circles of the tube, which cross them.
+/// at the bottom, which the inner sheet does not have, and two circles of the tube, which cross
+/// them.
 fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
     let LocalSight::Direction(d) = sight else {
         return None;
@@ -219,8 +240,17 @@ fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
             radius: s.major,
         }))
     };
+    let poles = match s.is_ring() {
+        true => Vec::new(),
+        false => vec![s.pole_angle(), TAU - s.pole_angle()],
+    };
+    let has_levels = s.major.is_above_zero();
     let tube = |radial: Vector3<f64>| Limb {
-        nodes: vec![quarter, -quarter],
+        nodes: match has_levels {
+            true => vec![quarter, -quarter],
+            false => Vec::new(),
+        },
+        apexes: poles.clone(),
         ..Limb::new(Curve::Circle(Circle {
             frame: Frame {
                 origin: s.frame.origin + radial * s.major,
@@ -231,12 +261,9 @@ fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
             radius: s.minor,
         }))
     };
-    Some(vec![
-        level(s.minor),
-        level(-s.minor),
-        tube(side),
-        tube(-side),
-    ])
+    let heights = [s.minor, -s.minor].into_iter().filter(|_| has_levels);
+    let levels = heights.map(level);
+    Some(levels.chain([tube(side), tube(-side)]).collect())
 }
 
 /// N·(P - E), or N·d, over the angles, scaled to a distance to first order.
@@ -266,7 +293,7 @@ fn torus_form(s: &Torus, sight: &LocalSight) -> BivariateTrigPoly {
 /// The approximate rate of change of N·r with the angle of the normal.
 fn slope(s: &Torus, sight: &LocalSight) -> f64 {
     match sight {
-        LocalSight::Eye(e) => e.norm() + s.major,
+        LocalSight::Eye(e) => e.norm() + s.major.abs(),
         LocalSight::Direction(_) => 1.0,
     }
 }
@@ -302,7 +329,13 @@ fn side_cutters(s: &Torus, sight: &ViewRay) -> Vec<Surface> {
         frame: s.frame,
         radius: s.major,
     };
-    vec![Surface::Plane(plane), Surface::Cylinder(cylinder)]
+    let levels = s
+        .major
+        .is_above_zero()
+        .then_some(Surface::Cylinder(cylinder));
+    std::iter::once(Surface::Plane(plane))
+        .chain(levels)
+        .collect()
 }
 
 /// Whether a direction of sight, in a torus's frame, is perpendicular to its axis.
@@ -338,6 +371,34 @@ fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
     }
 }
 
+/// The part of a range of a curve on a torus that ends off the poles, where there is no normal.
+fn off_poles(s: &Torus, curve: &Curve, [lo, hi]: [f64; 2], resolution: f64) -> [f64; 2] {
+    let near = OFF_POLE * s.pole_blur(resolution);
+    let from_pole = |t: f64| {
+        let p = curve.point(t);
+        let away = s.poles().map(|pole| (pole - p).norm());
+        away.fold(f64::INFINITY, f64::min) - near
+    };
+    let middle = 0.5 * (lo + hi);
+    let is_at_pole = |end: f64| from_pole(end).is_below_zero();
+    [
+        if is_at_pole(lo) {
+            bisect(lo, middle, -1.0, from_pole)
+        } else {
+            lo
+        },
+        if is_at_pole(hi) {
+            bisect(middle, hi, 1.0, from_pole)
+        } else {
+            hi
+        },
+    ]
+}
+
+/// The distance from a pole, relative to that within which the normal is not known, at which it is
+/// clear.
+const OFF_POLE: f64 = 8.0;
+
 /// Where a curve on a torus crosses the torus's limb: the parameters over `range`, and whether
 /// the curve runs along it.
 pub fn torus_limb_on(
@@ -348,6 +409,7 @@ pub fn torus_limb_on(
     resolution: f64,
 ) -> Roots {
     let local = local(&s.frame, sight);
+    let range = off_poles(s, curve, range, resolution);
     let scale = 1.0 / slope(s, &local);
     let f = |t: Interval| {
         let q = s.frame.local(curve.jet_over(t));
@@ -374,6 +436,7 @@ pub fn cusps(
     resolution: f64,
 ) -> Vec<f64> {
     let local = local(&s.frame, sight);
+    let range = off_poles(s, curve, range, resolution);
     let scale = s.minor / slope(s, &local).powi(2);
     let f = |t: Interval| {
         let q = s.frame.local(curve.jet_over(t));

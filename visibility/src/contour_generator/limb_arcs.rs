@@ -78,6 +78,12 @@ pub fn limb_arcs(scene: &Scene<'_>, junctions: &mut Junctions<'_>) -> Result<Lim
     Ok(trim.found)
 }
 
+/// The junction at an apex of a face's surface.
+struct ApexJunction {
+    place: Point3<f64>,
+    junction: u32,
+}
+
 struct LimbTrimmer<'s, 'a, 'j, 'p> {
     scene: &'s Scene<'a>,
     junctions: &'j mut Junctions<'p>,
@@ -106,22 +112,49 @@ impl LimbTrimmer<'_, '_, '_, '_> {
                 }
             }
         }
-        let mut apex = None;
+        let mut apexes: Vec<ApexJunction> = Vec::new();
         for (limb, mut ends) in limbs.iter().zip(ends) {
-            if let Some(from) = limb.from {
-                let p = limb.curve.point(from);
+            for &t in &limb.apexes {
+                let p = limb.curve.point(t);
                 let near = SPACE_TOLERANCE * self.scene.resolution;
-                if ends.iter().all(|e| (e.t - from).abs().is_beyond(near)) {
-                    let add = || {
-                        self.junctions
-                            .add(JunctionKind::Vertex, JunctionSupport::Alone, &p)
-                    };
-                    let junction = *apex.get_or_insert_with(add);
-                    ends.push(ArcJunction { t: from, junction });
+                let away = |e: &ArcJunction| (limb.curve.point(e.t) - p).norm();
+                let is_apex = |e: &ArcJunction| limb.apexes.iter().any(|t| t.is_exactly(e.t));
+                if ends.iter().all(|e| is_apex(e) || away(e).is_beyond(near)) {
+                    let junction = self.end_at_apex(face, &p, &mut apexes);
+                    ends.push(ArcJunction { t, junction });
                 }
             }
             self.limb(face, limb, ends);
         }
+    }
+
+    /// The junction where a limb ends in an apex, shared by all limbs that do.
+    fn end_at_apex(&mut self, face: FaceId, p: &Point3<f64>, known: &mut Vec<ApexJunction>) -> u32 {
+        let brep = self.scene.brep;
+        let blur = match brep.surface(face) {
+            Surface::Torus(torus) => torus.pole_blur(self.scene.resolution),
+            _ => self.scene.resolution,
+        };
+        let near = SPACE_TOLERANCE * blur;
+        if let Some(apex) = known.iter().find(|a| (a.place - p).norm().is_within(near)) {
+            return apex.junction;
+        }
+        let ends = face_edges(self.scene, face);
+        let ends = ends.iter().filter_map(|&e| brep.topology.edge(e).ends);
+        let vertex = ends
+            .flatten()
+            .find(|&v| (brep.point(v) - p).norm().is_within(near));
+        let junction = match vertex {
+            Some(v) => self.junctions.vertex(v, &brep.point(v)),
+            None => self
+                .junctions
+                .add(JunctionKind::Vertex, JunctionSupport::Alone, p),
+        };
+        known.push(ApexJunction {
+            place: *p,
+            junction,
+        });
+        junction
     }
 
     /// The parameters at which the limbs of a surface, and the surfaces that cut these out,
@@ -226,7 +259,12 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         ends.sort_by(|a, b| a.t.total_cmp(&b.t));
         let near = SPACE_TOLERANCE * self.scene.resolution;
         let apart = |t: f64, s: f64| (curve.point(t) - curve.point(s)).norm();
-        ends.dedup_by(|b, a| a.junction == b.junction || apart(a.t, b.t).is_within(near));
+        // Between two passes through one pole of a torus the limb lies on its other sheet.
+        let is_apex = |end: &ArcJunction| limb.apexes.iter().any(|t| t.is_exactly(end.t));
+        ends.dedup_by(|b, a| {
+            let is_one = a.junction == b.junction || apart(a.t, b.t).is_within(near);
+            is_one && !(is_apex(a) && is_apex(b))
+        });
         let Some(period) = curve.period() else {
             for pair in ends.windows(2) {
                 self.stretch(
@@ -258,6 +296,11 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     fn stretch(&mut self, face: FaceId, limb: &Limb, range: [f64; 2], ends: [Option<u32>; 2]) {
         let [lo, hi] = range;
         let at = |part: f64| limb.curve.point(lo + (hi - lo) * part);
+        if let Surface::Torus(torus) = self.scene.brep.surface(face)
+            && torus.own_sheet(<[f64; 3]>::from(at(0.5))).is_at_most(0.0)
+        {
+            return;
+        }
         let locator = self.scene.locator.face(face);
         // A limb on the boundary runs along an edge, which represents it.
         let inside = [0.5, 0.31, 0.73]

@@ -156,7 +156,7 @@ pub fn part_size(brep: &Brep) -> f64 {
         let around = |f: &Frame, r: f64| Aabb::new(&f.origin).grown(r);
         match brep.surface(face) {
             Surface::Sphere(s) => hull = hull.hull(&around(&s.frame, s.radius)),
-            Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.major + s.minor)),
+            Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.circumradius())),
             _ => {}
         }
     }

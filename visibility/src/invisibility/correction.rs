@@ -339,15 +339,11 @@ impl<'s, 'a> Corrections<'s, 'a> {
         }
     }
 
-    /// Whether a point is the apex of a face's cone, which has no normal there.
+    /// Whether a point is an apex of a face's surface, which has no normal there.
     fn is_apex(&self, face: FaceId, p: &Point3<f64>) -> bool {
-        match self.scene.brep.surface(face) {
-            Surface::Cone(s) => {
-                let away = (p - s.frame.origin).norm();
-                away.is_within(SPACE_TOLERANCE * self.scene.resolution)
-            }
-            _ => false,
-        }
+        let mut apexes = self.scene.brep.surface(face).apexes();
+        let near = SPACE_TOLERANCE * self.scene.resolution;
+        apexes.any(|apex| (p - apex).norm().is_within(near))
     }
 }
 

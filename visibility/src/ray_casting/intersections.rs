@@ -148,7 +148,7 @@ impl Scene<'_> {
         found: &mut LineHits,
     ) {
         // The torus lies inside this sphere; the origin may be far away.
-        let reach = s.major + s.minor + 4.0 * self.resolution;
+        let reach = s.circumradius() + 4.0 * self.resolution;
         let nearest = -q.dot(w);
         let half2 = reach * reach - (q + w * nearest).norm_squared();
         if half2.is_at_most(0.0) {
@@ -187,13 +187,19 @@ impl Scene<'_> {
                     std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
                 surface.level(p)
             };
-            if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
-                found.push(0.5 * (lo + hi), true);
+            for [lo, hi] in self.beside_poles(s, q, w, [lo, hi], found) {
+                if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
+                    found.push(0.5 * (lo + hi), true);
+                }
             }
             return;
         }
-        // The gradient of the quartic is 8 R r ρ; ρ is at least R - r.
-        let size = 8.0 * major * minor * (major - minor) / reach.powi(known as i32);
+        // The gradient of the quartic is 8 R r ρ; on a ring ρ is at least R - r.
+        let least = match s.is_ring() {
+            true => major - minor,
+            false => q.x.hypot(q.y).max(ROUNDING.sqrt() * reach),
+        };
+        let size = 8.0 * major.abs() * minor * least / reach.powi(known as i32);
         let rest = &quartic[known..];
         let f = |t: Interval| {
             let t = Jet::variable(t);
@@ -203,7 +209,45 @@ impl Scene<'_> {
                 .fold(zero, |sum, &k| sum * t + Jet::constant(k))
                 .scale(1.0 / size)
         };
-        self.isolated(&f, lo, hi, found);
+        let mut both = LineHits::default();
+        self.isolated(&f, lo, hi, &mut both);
+        let own = Torus {
+            frame: Frame::world(),
+            ..*s
+        };
+        for hit in both.as_slice() {
+            let p: [f64; 3] = (q + w * hit.at).into();
+            if s.is_ring() || own.own_sheet(p).is_above_zero() {
+                found.push(hit.at, hit.touches);
+            }
+        }
+    }
+
+    /// The parts of a range of a line that are not close to a pole of a torus; at a pole the line
+    /// touches the surface. The line is given in the torus's frame.
+    fn beside_poles(
+        &self,
+        s: &Torus,
+        q: &Vector3<f64>,
+        w: &Vector3<f64>,
+        range: [f64; 2],
+        found: &mut LineHits,
+    ) -> Vec<[f64; 2]> {
+        let mut parts = vec![range];
+        for pole in s.poles() {
+            let from_pole = q - s.frame.coordinates(&pole);
+            let at = -from_pole.dot(w);
+            let [from, to] = [-1.0, 1.0].map(|side| at + side * 4.0 * self.resolution);
+            let is_through = self.through_apex(&from_pole, w) && at.lies_in(range);
+            if is_through {
+                found.push(at, true);
+                let halves = parts
+                    .iter()
+                    .flat_map(|&[lo, hi]| [[lo, hi.min(from)], [lo.max(to), hi]]);
+                parts = halves.filter(|[lo, hi]| lo.is_short_of(*hi)).collect();
+            }
+        }
+        parts
     }
 
     fn isolated(

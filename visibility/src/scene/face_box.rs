@@ -22,6 +22,7 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
     };
     let hull = match brep.surface(face) {
         Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
+        // Of the inner sheet of a torus the box of the whole tube is a bound as well.
         Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
         // Every point of these surfaces lies on a segment between two points of the boundary. On a
         // cone that contains its apex one of them may be the apex.

@@ -63,6 +63,14 @@ def shape_in(path):
     return reader.OneShape()
 
 
+def volumes(shape):
+    """The volume by both of the reader's quadratures, each of which is inexact on some surfaces."""
+    adaptive, fixed = GProp_GProps(), GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, adaptive, 1e-6)
+    BRepGProp.VolumeProperties_s(shape, fixed)
+    return adaptive.Mass(), fixed.Mass()
+
+
 def faults(premio, description, folder):
     """What is wrong with a description's STEP file; none where the program has none to write."""
     known = measures(premio, description)
@@ -79,9 +87,7 @@ def faults(premio, description, folder):
     found = []
     if not BRepCheck_Analyzer(shape).IsValid():
         found.append("not valid")
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties, 1e-6)
-    off = abs(properties.Mass() / known["volume"] - 1)
+    off = min(abs(volume / known["volume"] - 1) for volume in volumes(shape))
     if off > VOLUME:
         found.append(f"a volume off by {off:.2g}")
     sides = [("solids", count(shape, TopAbs_SOLID), known["solids"])]

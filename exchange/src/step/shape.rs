@@ -9,7 +9,7 @@ use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::{Cone, Surface};
+use premio_kernel::geometry::surface::{Cone, Surface, Torus};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Writes the shape of a part.
@@ -30,7 +30,8 @@ pub(super) struct Shape<'s, 'e> {
 #[derive(Clone, Copy)]
 struct Placed {
     id: Id,
-    /// For a cone, the height above the apex from which its height is measured.
+    /// The value of the second parameter from which the file measures it: for a cone a height above
+    /// the apex, for a torus that reaches its axis the lower pole.
     level: f64,
 }
 
@@ -170,6 +171,14 @@ impl<'s, 'e> Shape<'s, 'e> {
             level = self.top(face);
             frame = frame.at(frame.point(0.0, 0.0, level));
         }
+        if let Surface::Torus(s) = surface
+            && !s.is_ring()
+        {
+            return Placed {
+                id: self.revolution(s),
+                level: -s.pole_angle(),
+            };
+        }
         let placement = self.placement(&frame);
         let id = match surface {
             Surface::Plane(_) => self.exchange.add(format_args!("PLANE('',{placement})")),
@@ -194,6 +203,32 @@ impl<'s, 'e> Shape<'s, 'e> {
             )),
         };
         Placed { id, level }
+    }
+
+    /// A torus that reaches its axis, as the surface of revolution of the part of its tube from pole
+    /// to pole, which starts at the lower pole.
+    fn revolution(&mut self, s: &Torus) -> Id {
+        let end = s.pole_angle();
+        let (sin, cos) = end.sin_cos();
+        let (f, axis) = (&s.frame, -s.frame.y);
+        let x = f.x * cos - f.z * sin;
+        let frame = Frame {
+            origin: f.origin + f.x * s.major,
+            x,
+            y: axis.cross(&x),
+            z: axis,
+        };
+        let circle = self.conic("CIRCLE", &frame, &[s.minor]);
+        let meridian = self.exchange.add(format_args!(
+            "TRIMMED_CURVE('',{circle},(PARAMETER_VALUE(0.)),(PARAMETER_VALUE({})),.T.,.PARAMETER.)",
+            Real(2.0 * end)
+        ));
+        let [origin, z] = [self.point(&f.origin), self.direction(&f.z)];
+        let about = self
+            .exchange
+            .add(format_args!("AXIS1_PLACEMENT('',{origin},{z})"));
+        self.exchange
+            .add(format_args!("SURFACE_OF_REVOLUTION('',{meridian},{about})"))
     }
 
     /// The height of the highest vertex of a face above its cone's apex.
@@ -348,12 +383,21 @@ fn half_angle(cone: &Cone) -> f64 {
     cone.sin.atan2(cone.cos)
 }
 
-/// Whether an edge is neither a straight line nor a conic in the parameters of a surface: both of
-/// them change, and one is an angle. A seam never is, whatever an angle does at a pole.
+/// Whether a file gives an edge in the parameters of a surface. Readers know which line or conic an
+/// edge is on the surfaces of their own, but not on a surface of revolution; a seam never needs it.
 fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
     }
+    if matches!(window.surface, Surface::Torus(torus) if !torus.is_ring()) {
+        return true;
+    }
+    winds(edge, window)
+}
+
+/// Whether an edge is neither a straight line nor a conic in the parameters of a surface: both of
+/// them change, and one is an angle.
+fn winds(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     let [lo, hi] = edge.range;
     let on = |k: u32| window.parameters_at(&edge.curve.point(lo + (hi - lo) * f64::from(k) / 8.0));
     let middle = on(4);

@@ -258,7 +258,7 @@ impl<'a> Linking<'a, '_> {
             let ends = [0, 1].map(|k| self.add_seam_end(seam, k, edge, next, &mut star));
             self.seamed.edges.push(seam_edge(seam, ends));
         }
-        next.extend(star.turns(self.brep.sense(face)).into_iter().flatten());
+        next.extend(star.turns(self.brep.sense(face)));
     }
 
     /// Routes loops around an end of a seam, and returns the vertex there.
@@ -295,7 +295,7 @@ impl<'a> Linking<'a, '_> {
     }
 }
 
-/// The crossing of two seams.
+/// The crossing of two seams, or the middle of one that is divided.
 #[derive(Default)]
 struct SeamCrossing {
     vertex: Option<usize>,
@@ -306,25 +306,32 @@ struct SeamCrossing {
 impl SeamCrossing {
     /// The turns of loops at the crossing, each from one half to the next; `sense` is that of the
     /// face.
-    fn turns(&self, sense: Sense) -> Option<[(HalfEdge, HalfEdge); 4]> {
-        let [Some(below), Some(left), Some(above), Some(right)] = self.edges else {
-            return None;
+    fn turns(&self, sense: Sense) -> Vec<(HalfEdge, HalfEdge)> {
+        let [below, left, above, right] = match self.edges {
+            [Some(below), Some(left), Some(above), Some(right)] => [below, left, above, right],
+            [Some(below), None, Some(above), None] if below != above => {
+                return vec![
+                    (HalfEdge::along(below), HalfEdge::along(above)),
+                    (HalfEdge::against(above), HalfEdge::against(below)),
+                ];
+            }
+            _ => return Vec::new(),
         };
         // As seen from outside: left if it is also to the left of the surface's normal.
-        Some(match sense {
-            Sense::Along => [
+        match sense {
+            Sense::Along => vec![
                 (HalfEdge::along(below), HalfEdge::against(left)),
                 (HalfEdge::along(left), HalfEdge::along(above)),
                 (HalfEdge::against(above), HalfEdge::along(right)),
                 (HalfEdge::against(right), HalfEdge::against(below)),
             ],
-            Sense::Against => [
+            Sense::Against => vec![
                 (HalfEdge::along(below), HalfEdge::along(right)),
                 (HalfEdge::along(left), HalfEdge::against(below)),
                 (HalfEdge::against(above), HalfEdge::against(left)),
                 (HalfEdge::against(right), HalfEdge::along(above)),
             ],
-        })
+        }
     }
 }
 

@@ -1,9 +1,11 @@
 //! The seams of a face.
 //!
-//! A seam is a ruling of a cylinder or a cone, a meridian of a sphere, a circle about the tube of a
-//! torus or a parallel of it. Its crossings with the edges of its face determine which part of it
+//! A seam is a ruling of a cylinder or a cone, a meridian of a sphere or of a torus that reaches its
+//! axis, a circle about the tube of any other torus or a parallel of it. Its crossings with the edges of its face determine which part of it
 //! lies in the face (`kernel::brep::surface_path`). Of several candidate tracks the one with the
 //! fewest cuts is used. Two seams of a torus cross in a vertex of their own.
+
+mod parting;
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
@@ -51,7 +53,8 @@ pub(super) enum End {
     },
     /// A pole or an apex inside the face, where the seam turns back.
     Pole(Point3<f64>),
-    /// The crossing of the two seams of a torus inside the face.
+    /// The crossing of the two seams of a torus inside the face, or the middle of a seam that is
+    /// divided.
     Crossing,
 }
 
@@ -161,7 +164,7 @@ impl Faced<'_> {
             true => least(found.filter(cuts_something))?,
             false => self.unless_parted(&whole, 0, least(found))?,
         };
-        if let Surface::Torus(_) = surface {
+        if is_ring(&surface) {
             let candidates = self.samples.candidates(&cut.window, 1);
             let found = candidates.into_iter().map(|v| {
                 let seams = self.seams(&cut.window.surface, 1, v)?;
@@ -176,6 +179,11 @@ impl Faced<'_> {
             cut.seams.extend(other.seams);
             cut.part_at_crossing();
         }
+        if let Surface::Torus(torus) = surface
+            && torus.poles().count() == 1
+        {
+            cut.part_between_poles();
+        }
         Some(cut)
     }
 
@@ -183,7 +191,7 @@ impl Faced<'_> {
     /// loop through a pole, where the angle is undefined, is inconclusive.
     fn winds(&self, window: &ParameterWindow, i: usize) -> bool {
         // A face of a torus that touches itself is closed thereby, and still winds around.
-        if let Surface::Torus(_) = window.surface {
+        if is_ring(&window.surface) {
             return false;
         }
         let mut senses = self
@@ -345,6 +353,7 @@ impl Faced<'_> {
             Surface::Cylinder(s) => self.cylinder_track(surface, s).into_iter().collect(),
             Surface::Cone(s) => self.cone_track(surface, s).into_iter().collect(),
             Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
+            Surface::Torus(s) if !s.is_ring() => self.sheet_track(surface, s).into_iter().collect(),
             Surface::Torus(s) => {
                 let window = ParameterWindow {
                     surface: *surface,
@@ -390,6 +399,41 @@ impl Faced<'_> {
             last: None,
         };
         ruling(surface, from, course)
+    }
+
+    /// The meridian of a torus that reaches its axis, from pole to pole. If edges end at a pole, it
+    /// ends beside it. None if edges end at one pole and the other is inside the face: readers drop a
+    /// seam that leads from a pole to an edge of such a loop.
+    fn sheet_track(&self, surface: &Surface, s: &Torus) -> Option<Track> {
+        let end = s.pole_angle();
+        let near = self.resolution / s.minor;
+        let limit = |sign: f64| {
+            let from_pole = |p| end - sign * surface.parameters(p)[1];
+            let away: Vec<f64> = self.samples.points().map(from_pole).collect();
+            let apart = away.iter().copied().filter(|d| *d > near);
+            let nearest = apart.fold(end, f64::min);
+            match away.into_iter().fold(end, f64::min) > near {
+                true => (sign * end, Some(sign * end)),
+                false => (sign * (end - 0.25 * nearest), None),
+            }
+        };
+        let [(from, first), (to, last)] = [limit(-1.0), limit(1.0)];
+        let start = surface.point(0.0, from);
+        let only_free = match (first, last) {
+            (Some(v), None) | (None, Some(v)) => Some(surface.point(0.0, v)),
+            _ => None,
+        };
+        if only_free.is_some_and(|pole| self.contains(&pole)) {
+            return None;
+        }
+        let walk = SurfacePath::meridian_at(s, &start, 0.0, Sense::Along);
+        Some(Track {
+            walk: walk.upto((to - from) * s.minor),
+            curve: tube(surface, s.major, s.minor),
+            start: from,
+            by: 1.0 / s.minor,
+            course: Course::Open { first, last },
+        })
     }
 
     /// The parallel of a torus at an angle of the tube, from an angle about the axis.
@@ -521,6 +565,11 @@ fn tube_track(surface: &Surface, s: &Torus, at: f64, start: f64) -> Track {
     }
 }
 
+/// Whether a surface is a torus whose tube does not reach the axis.
+pub(super) fn is_ring(surface: &Surface) -> bool {
+    matches!(surface, Surface::Torus(torus) if torus.is_ring())
+}
+
 /// The number of starting points tried for a closed seam.
 const STARTS: usize = 4;
 /// The number of axes tried for a sphere that the first axis cuts into pieces.
@@ -545,50 +594,4 @@ fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
         }
     }
     best
-}
-
-impl Cut {
-    /// Splits the pieces of both seams where they cross.
-    fn part_at_crossing(&mut self) {
-        let v = self.window.starts[1];
-        // Along one seam the other angle is the curve's parameter.
-        let at = [v, 0.0];
-        let passes = |seam: &Seam| {
-            let [lo, hi] = seam.range;
-            let t = lo + (at[seam.across] - lo).rem_euclid(TAU);
-            (t < hi || seam.ends == [End::Crossing; 2]).then_some(t)
-        };
-        let both = |i: usize| {
-            self.seams
-                .iter()
-                .any(|s| s.across == i && passes(s).is_some())
-        };
-        if !(both(0) && both(1)) {
-            return;
-        }
-        let seams = std::mem::take(&mut self.seams);
-        for seam in seams {
-            let [lo, hi] = seam.range;
-            match passes(&seam) {
-                None => self.seams.push(seam),
-                Some(t) if seam.ends == [End::Crossing; 2] => self.seams.push(Seam {
-                    range: [t, t + TAU],
-                    ..seam
-                }),
-                Some(t) => {
-                    let [from, to] = seam.ends;
-                    self.seams.push(Seam {
-                        range: [lo, t],
-                        ends: [from, End::Crossing],
-                        ..seam.clone()
-                    });
-                    self.seams.push(Seam {
-                        range: [t, hi],
-                        ends: [End::Crossing, to],
-                        ..seam
-                    });
-                }
-            }
-        }
-    }
 }

@@ -334,9 +334,9 @@ mod tests {
     fn what_is_not_read_is_named() {
         let (file, _) = written(PARTS[1]);
         let error = |text: &str| measures(text).unwrap_err();
-        let other = file.replace("=SPHERICAL_SURFACE(", "=SURFACE_OF_REVOLUTION(");
+        let other = file.replace("=SPHERICAL_SURFACE(", "=OFFSET_SURFACE(");
         let words = error(&other).to_string();
-        assert!(words.starts_with("SURFACE_OF_REVOLUTION"), "{words}");
+        assert!(words.starts_with("OFFSET_SURFACE"), "{words}");
         let metres = file.replace(".MILLI.", "$");
         assert!(matches!(error(&metres), StepMeasureError::Entity(_)));
         let nested = format!("DATA;\n#1=A({});", "(".repeat(100_000));

@@ -5,7 +5,7 @@ use super::part21::{Instances, StepInstance, StepReadError, StepValue};
 use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// An edge.
 #[derive(Clone, Debug)]
@@ -92,6 +92,10 @@ impl StepShape {
 
 /// The distance of a spline's end from a vertex that is taken for it, relative to the edge's ends.
 const CLOSE: f64 = 1.0 / (1 << 20) as f64;
+
+/// The deviation, relative to the size, within which points are the same and directions are at right
+/// angles.
+const SAME_POINT: f64 = 1.0 / (1u64 << 32) as f64;
 
 struct Reader<'i> {
     instances: &'i Instances,
@@ -395,10 +399,45 @@ impl<'i> Reader<'i> {
                 major: surface.number(2)?,
                 minor: surface.number(3)?,
             },
+            "SURFACE_OF_REVOLUTION" => return self.sheet(&surface),
             _ => return Err(surface.wrong("a surface")),
         };
         let place = self.placement(surface.instance(1)?)?;
         Ok(StepSurface { place, form })
+    }
+
+    /// The surface of revolution of a circle that starts on the axis and returns to it.
+    fn sheet(&self, surface: &Entity<'_>) -> Result<StepSurface, StepReadError> {
+        let meridian = self.named(surface.instance(1)?, "TRIMMED_CURVE")?;
+        let circle = self.named(meridian.instance(1)?, "CIRCLE")?;
+        let (about, minor) = (self.placement(circle.instance(1)?)?, circle.number(2)?);
+        let axis = self.named(surface.instance(2)?, "AXIS1_PLACEMENT")?;
+        let origin = self.point(axis.instance(1)?)?;
+        let z = self.direction(axis.instance(2)?)?;
+        // The circle leads upwards on the outside.
+        let x = z.cross(&about.z);
+        let away = about.origin - origin;
+        let major = away.dot(&x);
+        let height = ((minor - major) * (minor + major)).max(0.0).sqrt();
+        let end = match height > 0.0 {
+            true => height.atan2(-major),
+            false => PI,
+        };
+        let start = about.origin + about.x * minor;
+        let pole = origin + z * (away.dot(&z) - height);
+        let near = SAME_POINT * (minor + major.abs());
+        match z.dot(&about.z).abs() <= SAME_POINT && (start - pole).norm() <= near {
+            true => Ok(StepSurface {
+                place: Placement {
+                    origin: origin + z * away.dot(&z),
+                    x,
+                    y: z.cross(&x),
+                    z,
+                },
+                form: SurfaceForm::Sheet { major, minor, end },
+            }),
+            false => Err(circle.wrong("a circle that starts at the lower pole")),
+        }
     }
 
     fn placement(&self, id: u32) -> Result<Placement, StepReadError> {

@@ -2,8 +2,8 @@
 //!
 //! For a surface S(u, v) with F = S · (S_u × S_v) / 3, the volume between a face and the origin is
 //! the integral of F over the face. By Green's theorem that is the integral of -P du along its
-//! loops, where P is the integral of F by v. For cones v is measured from the apex, for spheres
-//! from the south pole, so that P is zero there.
+//! loops, where P is the integral of F by v. For cones v is measured from the apex, for spheres and
+//! the sheets of tori from the south pole, so that P is zero there.
 
 use super::curve::Placement;
 use nalgebra::{Point3, Vector3};
@@ -34,6 +34,13 @@ pub enum SurfaceForm {
     Torus {
         major: f64,
         minor: f64,
+    },
+    /// The surface of revolution of a circle from pole to pole; v is the angle from the south pole.
+    Sheet {
+        major: f64,
+        minor: f64,
+        /// The angle about the circle at the north pole.
+        end: f64,
     },
 }
 
@@ -67,7 +74,9 @@ impl StepSurface {
                 (rho - (radius + q.z * slope).abs()) / (1.0 + slope * slope).sqrt()
             }
             SurfaceForm::Sphere { radius } => q.norm() - radius,
-            SurfaceForm::Torus { major, minor } => (rho - major).hypot(q.z) - minor,
+            SurfaceForm::Torus { major, minor } | SurfaceForm::Sheet { major, minor, .. } => {
+                (rho - major).hypot(q.z) - minor
+            }
         }
     }
 
@@ -88,15 +97,24 @@ impl StepSurface {
             SurfaceForm::Torus { major, minor } => {
                 origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
             }
+            SurfaceForm::Sheet { major, minor, end } => {
+                let v = v - end;
+                origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
+            }
         }
     }
 
-    /// The pole close to a point, if there is one.
-    pub fn pole(&self, p: &Point3<f64>, tolerance: f64) -> Option<Pole> {
+    /// The pole close to the end `p` of an edge, if there is one; `inner` is a point of the edge near
+    /// that end. Both poles of a sheet may be one point.
+    pub fn pole(&self, p: &Point3<f64>, inner: &Point3<f64>, tolerance: f64) -> Option<Pole> {
         let q = self.place.local(p);
         let is_on_axis = q.x.hypot(q.y) <= tolerance;
         match self.form {
             SurfaceForm::Cone { slope, .. } if is_on_axis => match slope > 0.0 {
+                true => Some(Pole::South),
+                false => Some(Pole::North),
+            },
+            SurfaceForm::Sheet { .. } if is_on_axis => match self.place.local(inner).z < 0.0 {
                 true => Some(Pole::South),
                 false => Some(Pole::North),
             },
@@ -118,6 +136,7 @@ impl StepSurface {
             SurfaceForm::Cylinder { .. } | SurfaceForm::Cone { .. } => [angle, q.z],
             SurfaceForm::Sphere { .. } => [angle, q.z.atan2(rho)],
             SurfaceForm::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
+            SurfaceForm::Sheet { major, end, .. } => [angle, q.z.atan2(rho - major) + end],
         }
     }
 
@@ -149,6 +168,9 @@ impl StepSurface {
             }
             SurfaceForm::Sphere { radius } => radius * radius * (v.sin() + 1.0),
             SurfaceForm::Torus { major, minor } => minor * (major * v + minor * v.sin()),
+            SurfaceForm::Sheet { major, minor, end } => {
+                minor * (major * v + minor * ((v - end).sin() + end.sin()))
+            }
         }
     }
 
@@ -168,12 +190,11 @@ impl StepSurface {
                 let level = radius * (sin + 1.0) - 0.5 * o.z * cos * cos;
                 radius * radius * (level + out * (0.5 * (v + sin * cos) + FRAC_PI_4))
             }
-            SurfaceForm::Torus { major: a, minor: r } => {
-                let (out, up) = (out + a, o.z);
-                r * ((a * out + r * r) * sin - a * up * cos
-                    + a * r * v
-                    + r * out * 0.5 * (v + sin * cos)
-                    + 0.5 * r * up * sin * sin)
+            SurfaceForm::Torus { major, minor } => torus_flow([major, minor], v, out, o.z),
+            SurfaceForm::Sheet { major, minor, end } => {
+                let [here, south] =
+                    [v - end, -end].map(|v| torus_flow([major, minor], v, out, o.z));
+                here - south
             }
         };
         three / 3.0
@@ -187,6 +208,9 @@ impl StepSurface {
         [from, to]: [f64; 2],
         about: &Point3<f64>,
     ) -> f64 {
+        if let (SurfaceForm::Sheet { .. }, Pole::North) = (self.form, pole) {
+            return self.flow_at_north_of_sheet(quantity, [from, to], about);
+        }
         let (SurfaceForm::Sphere { radius }, Pole::North) = (self.form, pole) else {
             return 0.0;
         };
@@ -197,4 +221,38 @@ impl StepSurface {
         let out = o.x * (to.sin() - from.sin()) - o.y * (to.cos() - from.cos());
         radius * radius * (2.0 * radius * (to - from) + FRAC_PI_2 * out) / 3.0
     }
+
+    /// The integral of P du at the north pole of a sheet. P is a constant and a multiple of the
+    /// distance of the axis in the direction of u.
+    fn flow_at_north_of_sheet(
+        &self,
+        quantity: FaceQuantity,
+        [from, to]: [f64; 2],
+        about: &Point3<f64>,
+    ) -> f64 {
+        let SurfaceForm::Sheet { major, minor, end } = self.form else {
+            return 0.0;
+        };
+        if quantity == FaceQuantity::Area {
+            return self.area_flow(2.0 * end) * (to - from);
+        }
+        let o = self.place.turned(&(self.place.origin - about));
+        let at = |out: f64| {
+            let [north, south] = [end, -end].map(|v| torus_flow([major, minor], v, out, o.z));
+            north - south
+        };
+        let (constant, rate) = (at(0.0), at(1.0) - at(0.0));
+        let out = o.x * (to.sin() - from.sin()) - o.y * (to.cos() - from.cos());
+        (constant * (to - from) + rate * out) / 3.0
+    }
+}
+
+/// Three times P of the volume on a torus, with the position of its centre outwards and upwards.
+fn torus_flow([a, r]: [f64; 2], v: f64, out: f64, up: f64) -> f64 {
+    let (sin, cos) = v.sin_cos();
+    let out = out + a;
+    r * ((a * out + r * r) * sin - a * up * cos
+        + a * r * v
+        + r * out * 0.5 * (v + sin * cos)
+        + 0.5 * r * up * sin * sin)
 }

@@ -129,6 +129,9 @@ const GAUSS: [[f64; 2]; 2] = [
 /// The weight of the middle node.
 const CENTRE: f64 = 128.0 / 225.0;
 
+/// The fraction of an edge's first piece at which a point is near the edge's end.
+const NEAR_END: f64 = 1.0 / 16.0;
+
 /// The number of times that a piece is halved.
 const HALVED: u32 = 12;
 
@@ -144,7 +147,15 @@ impl Walk<'_> {
             true => (edge.points[0], edge.points[1]),
             false => (edge.points[1], edge.points[0]),
         };
-        let poles = [start, end].map(|p| self.surface.pole(&p, self.tolerance));
+        let ([first, second, ..], [.., before, last]) = (&stops[..], &stops[..]) else {
+            return;
+        };
+        let inside = |a: f64, b: f64| edge.curve.at(a + NEAR_END * (b - a)).point;
+        let poles = [
+            (start, inside(*first, *second)),
+            (end, inside(*last, *before)),
+        ];
+        let poles = poles.map(|(p, inner)| self.surface.pole(&p, &inner, self.tolerance));
         for (k, pair) in stops.windows(2).enumerate() {
             // Between the ends, so that no angle is evaluated at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());

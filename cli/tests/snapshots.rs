@@ -110,7 +110,7 @@ fn messages() {
         ("name.padl", "A = SPH(R=1)\nB = A DUF A\n"),
         ("order.padl", "B = A UN A\nA = SPH(R=1)\n"),
         ("size.padl", "A = BLO(X=1, Y=-2, Z=3)\n"),
-        ("ring.padl", "A = TOR(RMAJ=2, RMIN=2)\n"),
+        ("ring.padl", "A = TOR(RMAJ=2, RMIN=0)\n"),
         ("open.padl", "A = (SPH(R=1) UN\n"),
         ("nothing.padl", "# only a comment\n"),
         (

@@ -44,11 +44,11 @@ pub enum Primitive {
         /// The radius.
         radius: Rational,
     },
-    /// A ring torus centred at the origin, with axis z.
+    /// A torus centred at the origin, with axis z.
     Torus {
         /// The radius of the circle that the tube's centre runs along.
         major: Rational,
-        /// The radius of the tube, less than `major`.
+        /// The radius of the tube.
         minor: Rational,
     },
     /// A figure of the xy plane extruded along +z.
@@ -170,15 +170,9 @@ pub enum PrimitiveError {
     /// A frustum needs at least one radius greater than zero.
     #[error("the base radius and the top radius must not both be zero")]
     NoRadius,
-    /// The tube of a torus must be smaller than its spine circle.
-    #[error("the minor radius must be less than the major radius")]
-    NotARing,
     /// A figure that is revolved must not cross the axis.
     #[error("the figure must lie on one side of the axis")]
     AcrossAxis,
-    /// A circle that crosses the axis makes a torus that intersects itself.
-    #[error("an arc about a point off the axis must have a circle that does not reach the axis")]
-    CircleAcrossAxis,
     /// An arc that is scaled must be centred on the axis of the prism.
     #[error("an arc of a scaled figure must be centred at the origin")]
     ObliqueArc,
@@ -190,7 +184,6 @@ impl PrimitiveError {
         match self {
             Self::NotPositive(dimension) | Self::Negative(dimension) => dimension,
             Self::NoRadius => Dimension::Top,
-            Self::NotARing | Self::CircleAcrossAxis => Dimension::Minor,
             Self::AcrossAxis => Dimension::Major,
             Self::ObliqueArc => Dimension::Top,
         }
@@ -272,16 +265,14 @@ impl Primitive {
         Ok(Self::Sphere { radius })
     }
 
-    /// A ring torus.
+    /// The points within the minor radius of a circle about the z axis with the major radius. If the
+    /// minor radius is not the smaller one, there is no hole: a horn or spindle torus, filled.
     ///
     /// # Errors
-    /// A radius is not greater than zero, or the minor one is not less than the major one.
+    /// A radius is not greater than zero.
     pub fn torus(major: Rational, minor: Rational) -> Result<Self, PrimitiveError> {
         positive(&major, Dimension::Major)?;
         positive(&minor, Dimension::Minor)?;
-        if minor >= major {
-            return Err(PrimitiveError::NotARing);
-        }
         Ok(Self::Torus { major, minor })
     }
 
@@ -325,7 +316,7 @@ impl Primitive {
     /// A figure revolved about z, by an angle or a whole turn.
     ///
     /// # Errors
-    /// The figure reaches beyond the axis, or a circle of it does whose centre is not on the axis.
+    /// The figure reaches beyond the axis.
     pub fn revolution(
         figure: Figure,
         angle: Option<RevolutionAngle>,
@@ -338,9 +329,6 @@ impl Primitive {
             let [lo, _] = edge.bounds();
             if lo[0] < -(8.0 * f64::EPSILON * to_f64(&arc.radius)) {
                 return Err(PrimitiveError::AcrossAxis);
-            }
-            if !arc.centre[0].is_zero() && arc.centre[0] <= arc.radius {
-                return Err(PrimitiveError::CircleAcrossAxis);
             }
         }
         let figure = Arc::new(figure);
@@ -541,9 +529,17 @@ mod tests {
     }
 
     #[test]
-    fn a_torus_has_a_hole() {
-        assert!(Primitive::torus(n(3), n(2)).is_ok());
-        assert_eq!(Primitive::torus(n(2), n(2)), Err(PrimitiveError::NotARing));
-        assert_eq!(PrimitiveError::NotARing.dimension(), Dimension::Minor);
+    fn a_torus_may_reach_its_axis() {
+        for minor in [2, 3, 4] {
+            assert!(Primitive::torus(n(3), n(minor)).is_ok());
+        }
+        assert_eq!(
+            Primitive::torus(n(2), n(0)),
+            Err(PrimitiveError::NotPositive(Dimension::Minor))
+        );
+        assert_eq!(
+            Primitive::torus(n(0), n(2)),
+            Err(PrimitiveError::NotPositive(Dimension::Major))
+        );
     }
 }

@@ -19,7 +19,7 @@ use std::time::Duration;
 const KNOWN_FAILURES: &[&str] = &[];
 
 /// Cases that the reader refuses, with a part of what it expects.
-const REFUSED: &[(&str, &str)] = &[("oscad-4001", "minor radius")];
+const REFUSED: &[(&str, &str)] = &[];
 
 fn corpus() -> Option<PathBuf> {
     let folder = std::env::var_os("PREMIO_CORPUS").map(PathBuf::from)?;

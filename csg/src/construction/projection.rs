@@ -85,6 +85,23 @@ fn disc_at([x, y, _]: &SpacePoint, radius: &Rational) -> Result<Figure, Construc
     Ok(Figure::disc(radius)?.mapped(&map)?)
 }
 
+/// A ring about a point, or a disc where the inner radius is not positive.
+fn ring_at(
+    centre: &SpacePoint,
+    outer: &Rational,
+    inner: &Rational,
+) -> Result<Figure, ConstructionError> {
+    let disc = disc_at(centre, outer)?;
+    if *inner <= Rational::ZERO {
+        return Ok(disc);
+    }
+    let hole = disc_at(centre, inner)?;
+    Ok(Figure::combined(
+        FigureOperation::Difference,
+        &[&disc, &hole],
+    )?)
+}
+
 /// The section of a primitive.
 fn section_of(placed: &PlacedPrimitive) -> Result<Figure, ConstructionError> {
     let empty = || ConstructionError::from(FigureError::Empty);
@@ -133,11 +150,7 @@ fn section_of(placed: &PlacedPrimitive) -> Result<Figure, ConstructionError> {
                 return Err(empty());
             }
             let half = root(&square);
-            let [outer, inner] = [major + &half, major - &half].map(|r| disc_at(centre, &r));
-            Ok(Figure::combined(
-                FigureOperation::Difference,
-                &[&outer?, &inner?],
-            )?)
+            ring_at(centre, &(major + &half), &(major - &half))
         }
         Primitive::Cylinder { radius, height } if up.is_zero() => {
             let square = radius * radius - z * z;
@@ -277,11 +290,7 @@ fn shadow_of(placed: &PlacedPrimitive) -> Result<Figure, ConstructionError> {
         Primitive::Sphere { radius } => disc_at(centre, radius),
         Primitive::Frustum { base, top, .. } if is_upright => disc_at(centre, base.max(top)),
         Primitive::Torus { major, minor } if is_upright => {
-            let [outer, inner] = [major + minor, major - minor].map(|r| disc_at(centre, &r));
-            Ok(Figure::combined(
-                FigureOperation::Difference,
-                &[&outer?, &inner?],
-            )?)
+            ring_at(centre, &(major + minor), &(major - minor))
         }
         Primitive::Cylinder { radius, height } if up.is_zero() => {
             lying(centre, &turn, radius, height)

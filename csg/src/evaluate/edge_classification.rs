@@ -448,7 +448,11 @@ impl<N: Float> Classifier<'_, N> {
         for i in 1..40 {
             // Golden-section steps, which spread over the surface.
             let u = N::whole(i) * N::from_f64(2.399_963_229_728_653);
-            let v = N::from_f64(1.3) * (N::whole(i) * N::from_f64(0.7)).sin();
+            let tall = match surface {
+                Surface::Torus(torus) => N::from_f64(0.4) * torus.pole_angle(),
+                _ => N::from_f64(1.3),
+            };
+            let v = tall * (N::whole(i) * N::from_f64(0.7)).sin();
             let p = surface.point(u, v);
             let look = self.look(&p, &[carrier]);
             if !look.may_have_faces() {

@@ -101,11 +101,11 @@ impl<'f> Incidence<'f> {
         let mut dependences = Vec::new();
         let mut normals: Vec<(usize, Vector3<N>)> = Vec::new();
         for (i, &c) in carriers.iter().enumerate() {
-            match &forms.carriers[c] {
-                Surface::Cone(cone) if is_there(&(cone.frame.origin - place), predicates) => {
-                    dependences.extend(levels[i].gradient());
-                }
-                surface => normals.push((i, surface.normal(place))),
+            let surface = &forms.carriers[c];
+            let mut apexes = surface.apexes();
+            match apexes.any(|apex| is_there(&(apex - place), predicates)) {
+                true => dependences.extend(levels[i].gradient()),
+                false => normals.push((i, surface.normal(place))),
             }
         }
         for (n, &(i, a)) in normals.iter().enumerate() {

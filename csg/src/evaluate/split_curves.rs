@@ -195,7 +195,7 @@ impl<N: Float> Arrangement<N> {
     }
 
     /// The known points of a curve on a carrier: the self-crossings of the curve, and the carrier's
-    /// apex. The distance along the curve is not smooth there, so roots close to them are less
+    /// apexes. The distance along the curve is not smooth there, so roots close to them are less
     /// accurate than the points.
     fn special_points(
         &self,
@@ -215,8 +215,7 @@ impl<N: Float> Arrangement<N> {
                 special.push(Cut { vertex, ..*cut });
             }
         }
-        if let Surface::Cone(cone) = surface {
-            let apex = cone.frame.origin;
+        for apex in surface.apexes() {
             if m.bounds.grown(predicates.resolution::<N>()).contains(&apex) {
                 let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
                 let away = (m.curve.point(t) - apex).length();
@@ -310,6 +309,10 @@ impl<N: Float> Arrangement<N> {
         corner.carriers.len() > known
     }
 }
+
+/// The least growth of the distance from a carrier along a curve from a special point that explains
+/// a near miss next to it.
+const SPECIAL_SLOPE: f64 = 1.0 / 16.0;
 
 /// A face of a carrier, close to a curve.
 struct CarrierFace {
@@ -408,7 +411,13 @@ impl<N: Float> CurveAndCarrier<'_, N> {
     /// The close call where the curve passes the carrier without a root, but not at a special point.
     fn near_miss(&self, miss: &NearMiss<N>) -> Option<Unlisted> {
         let p = self.curve().curve.point(miss.t);
-        match self.is_special(&p) {
+        // Away from a special point the distance grows from zero.
+        let slope = N::from_f64(SPECIAL_SLOPE);
+        let explains = |s: &SpecialPoint<N>| {
+            let grown = (s.point - p).length() * slope;
+            miss.value.abs().reaches(grown)
+        };
+        match self.is_special(&p) || self.special.iter().any(explains) {
             true => None,
             false => self.close_call("curve beside surface", miss.value, &p),
         }

@@ -1,5 +1,6 @@
 //! Figures at the axis of a revolution, the line x = 0.
 
+use super::roots::root;
 use super::{
     ArcTurn, ContourCorner, Figure, FigureArc, FigureEdge, FigureError, FigurePoint, PlaneMap,
 };
@@ -30,7 +31,7 @@ impl Figure {
     /// The part with x >= 0; `None` if there is none.
     ///
     /// # Errors
-    /// An arc crosses the axis whose centre is not on it.
+    /// The part is no figure: its contours cross.
     pub(crate) fn right_of_axis(&self) -> Result<Option<Self>, FigureError> {
         let [lo, hi] = self.bounds();
         if lo[0] >= 0.0
@@ -44,8 +45,7 @@ impl Figure {
         if hi[0] <= 0.0 {
             return Ok(None);
         }
-        let contours = self.contours().map(right_part);
-        let contours: Vec<Vec<ContourCorner>> = contours.collect::<Result<_, _>>()?;
+        let contours: Vec<Vec<ContourCorner>> = self.contours().map(right_part).collect();
         match Self::from_contours(&contours) {
             Ok(figure) => Ok(Some(figure)),
             Err(FigureError::Empty) => Ok(None),
@@ -56,7 +56,7 @@ impl Figure {
 
 /// The corners of a contour clipped to x >= 0 (Sutherland and Hodgman 1974). Segments along the
 /// axis may overlap; the even-odd rule cancels them.
-fn right_part(contour: &[FigureEdge]) -> Result<Vec<ContourCorner>, FigureError> {
+fn right_part(contour: &[FigureEdge]) -> Vec<ContourCorner> {
     let is_right = |p: &FigurePoint| p[0] >= Rational::ZERO;
     let mut corners = Vec::new();
     for edge in contour {
@@ -66,7 +66,7 @@ fn right_part(contour: &[FigureEdge]) -> Result<Vec<ContourCorner>, FigureError>
             arc: arc.clone(),
         };
         if let Some(arc) = &edge.arc {
-            corners.extend(right_arc(edge, arc)?);
+            corners.extend(right_arc(edge, arc));
             continue;
         }
         if is_right(s) {
@@ -78,12 +78,11 @@ fn right_part(contour: &[FigureEdge]) -> Result<Vec<ContourCorner>, FigureError>
             corners.push(kept(&[Rational::ZERO, y], &None));
         }
     }
-    Ok(corners)
+    corners
 }
 
-/// The corners of an arc clipped to x >= 0: an arc on one side of the axis, or with its centre and
-/// its ends on it or across it.
-fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, FigureError> {
+/// The corners of an arc clipped to x >= 0.
+fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Vec<ContourCorner> {
     let corner = |point: &FigurePoint, arc: Option<FigureArc>| ContourCorner {
         point: point.clone(),
         arc,
@@ -91,24 +90,25 @@ fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, F
     let [lo, hi] = edge.bounds();
     let slack = 8.0 * f64::EPSILON * to_f64(&arc.radius);
     if lo[0] >= -slack {
-        return Ok(vec![corner(&edge.start, Some(arc.clone()))]);
+        return vec![corner(&edge.start, Some(arc.clone()))];
     }
     if hi[0] <= slack {
         // Where the contour leaves the axis to the left, a segment along the axis follows.
         let leaves = to_f64(&edge.start[0]) >= -slack;
         let on_axis = [Rational::ZERO, edge.start[1].clone()];
         let left = leaves.then(|| corner(&on_axis, None));
-        return Ok(left.into_iter().collect());
+        return left.into_iter().collect();
     }
-    if !arc.centre[0].is_zero() {
-        return Err(FigureError::ArcAcrossAxis);
-    }
-    // The poles, in the order in which the arc passes them on the right.
+    // The points on the axis, in the order in which the arc passes them on the right.
+    let half = match arc.centre[0].is_zero() {
+        true => arc.radius.clone(),
+        false => root(&(&arc.radius * &arc.radius - &arc.centre[0] * &arc.centre[0])),
+    };
     let pole = |up: bool| {
         let y = if up {
-            &arc.centre[1] + &arc.radius
+            &arc.centre[1] + &half
         } else {
-            &arc.centre[1] - &arc.radius
+            &arc.centre[1] - &half
         };
         [Rational::ZERO, y]
     };
@@ -125,9 +125,9 @@ fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, F
         if !is_right(&edge.end) {
             passed.push(corner(&last, None));
         }
-        return Ok(passed);
+        return passed;
     }
-    Ok(match [is_right(&edge.start), is_right(&edge.end)] {
+    match [is_right(&edge.start), is_right(&edge.end)] {
         [true, true] => vec![
             corner(&edge.start, Some(arc.clone())),
             corner(&last, None),
@@ -136,5 +136,5 @@ fn right_arc(edge: &FigureEdge, arc: &FigureArc) -> Result<Vec<ContourCorner>, F
         [true, false] => vec![corner(&edge.start, Some(arc.clone())), corner(&last, None)],
         [false, true] => vec![corner(&first, Some(arc.clone()))],
         [false, false] => vec![corner(&first, Some(arc.clone())), corner(&last, None)],
-    })
+    }
 }

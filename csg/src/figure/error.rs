@@ -24,9 +24,6 @@ pub enum FigureError {
     /// A factor or matrix does not map circles to circles.
     #[error("a map that makes ellipses of arcs")]
     Elliptic,
-    /// An arc crosses the axis of a revolution, and its centre is not on the axis.
-    #[error("an arc that crosses the axis, with its centre elsewhere")]
-    ArcAcrossAxis,
     /// Too many edges cross or are close to each other.
     #[error("a figure of {count} edges of which too many cross or are close to each other")]
     TooComplex {

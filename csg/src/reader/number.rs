@@ -60,9 +60,6 @@ pub(super) fn bad_length(
     let found = match (value, error) {
         (Some(value), _) => show(value),
         (None, PrimitiveError::AcrossAxis) => "a figure that crosses the axis".to_owned(),
-        (None, PrimitiveError::CircleAcrossAxis) => {
-            "an arc of a circle that reaches the axis".to_owned()
-        }
         (None, PrimitiveError::ObliqueArc) => "an arc about another point".to_owned(),
         (None, _) => "a wrong length".to_owned(),
     };
@@ -70,16 +67,9 @@ pub(super) fn bad_length(
         PrimitiveError::NotPositive(what) => format!("a {what} greater than zero"),
         PrimitiveError::Negative(what) => format!("a {what} of zero or more"),
         PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
-        PrimitiveError::NotARing => "a minor radius less than the major radius".to_owned(),
         PrimitiveError::AcrossAxis => "a figure on one side of the axis".to_owned(),
-        PrimitiveError::CircleAcrossAxis => {
-            "arcs about points of the axis, or of circles that do not reach it".to_owned()
-        }
         PrimitiveError::ObliqueArc => "arcs about the origin, where a figure is scaled".to_owned(),
     };
-    let is_about_circles = matches!(
-        error,
-        PrimitiveError::CircleAcrossAxis | PrimitiveError::ObliqueArc
-    );
+    let is_about_circles = error == PrimitiveError::ObliqueArc;
     SpannedError::input(span, found, expected).about_circles(is_about_circles)
 }

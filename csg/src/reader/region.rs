@@ -21,10 +21,7 @@ pub(super) fn bad_figure(error: &FigureError, span: &Range<usize>) -> SpannedErr
 
 /// Whether an error is about circles and arcs that polygons could replace.
 pub(super) fn concerns_circles(error: &FigureError) -> bool {
-    matches!(
-        error,
-        FigureError::Elliptic | FigureError::ArcAcrossAxis | FigureError::NoHull
-    )
+    matches!(error, FigureError::Elliptic | FigureError::NoHull)
 }
 
 /// A figure of a description.

@@ -60,7 +60,7 @@ impl Round<'_> {
         };
         let own = match self.primitive {
             Primitive::Torus { major, minor } => {
-                vec![major.clone(), major + minor, major - minor]
+                vec![major.clone(), major + minor, magnitude(major - minor)]
             }
             Primitive::Cylinder { radius, .. } => vec![radius.clone()],
             _ => Vec::new(),
@@ -81,7 +81,7 @@ impl Round<'_> {
         match self.primitive {
             Primitive::Torus { major, minor } => {
                 let [major, minor] = [major, minor].map(to_f64);
-                [major, major + minor, major - minor]
+                [major, major + minor, (major - minor).abs()]
                     .into_iter()
                     .any(is_near)
             }

@@ -67,7 +67,11 @@ pub(super) fn features(primitive: &Primitive, axis: LocalAxis) -> Vec<Feature> {
             false => vec![plane(&zero), plane(height)],
         },
         Primitive::Torus { major, minor } => match is_across(axis) {
-            true => about_centre(&[major, &(major + minor), &(major - minor)]),
+            true => {
+                // The inner rim is none of a torus that reaches its axis.
+                let inner = (major - minor).max(Rational::ZERO);
+                about_centre(&[major, &(major + minor), &inner])
+            }
             false => about_centre(&[minor]),
         },
         Primitive::Prism { height, .. } => match is_across(axis) {

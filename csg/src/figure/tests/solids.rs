@@ -267,6 +267,61 @@ fn arcs_revolve_to_spheres_and_tori() {
     assert_eq!(faces, 5);
 }
 
+/// The volume swept by the part beyond the axis of a disc of radius 5 about a point at a distance
+/// from the axis, which is negative on the other side: 2 pi times the integral of
+/// 2 x sqrt(25 - (x - d)²).
+fn swept_disc(distance: f64) -> f64 {
+    let half: f64 = (25.0 - distance * distance).sqrt();
+    let area = 25.0 * (PI / 2.0 + (distance / 5.0).asin()) + distance * half;
+    2.0 * PI * (distance * area + 2.0 / 3.0 * half.powi(3))
+}
+
+#[test]
+fn arcs_may_reach_the_axis() {
+    // A lemon, and an apple with a core.
+    let lemon = Figure::from_contours(&[vec![arc(0, -4, [-3, 0], 5), corner(0, 4)]]).unwrap();
+    let lemon = Primitive::revolution(lemon, None).unwrap();
+    assert_eq!(check(lemon, swept_disc(-3.0)), [0, 0, 0, 1]);
+    let apple = Figure::from_contours(&[vec![arc(0, -4, [3, 0], 5), corner(0, 4)]]).unwrap();
+    let quarter = RevolutionAngle::new(n(90)).unwrap();
+    let whole = Primitive::revolution(apple.clone(), None).unwrap();
+    assert_eq!(check(whole, swept_disc(3.0)), [0, 0, 0, 1]);
+    let quarter = Primitive::revolution(apple, Some(quarter)).unwrap();
+    assert_eq!(check(quarter, swept_disc(3.0) / 4.0), [2, 3, 3, 3]);
+    // A disc that touches the axis, and the half of it above.
+    let disc = Figure::disc(&n(5)).unwrap();
+    let map = PlaneMap {
+        offset: [n(5), n(0)],
+        ..PlaneMap::identity()
+    };
+    let touching = disc.mapped(&map).unwrap();
+    let horn = Primitive::revolution(touching, None).unwrap();
+    assert_eq!(check(horn, 250.0 * PI * PI), [0, 0, 0, 1]);
+    let above = [arc(10, 0, [5, 0], 5), corner(0, 0)];
+    let above = Figure::from_contours(&[above.to_vec()]).unwrap();
+    let above = Primitive::revolution(above, None).unwrap();
+    let [_, _, _, faces] = check(above, 125.0 * PI * PI);
+    assert_eq!(faces, 2);
+}
+
+#[test]
+fn arcs_are_clipped_at_the_axis() {
+    // A disc about a point beside the axis: the kept part is an apple's.
+    let map = PlaneMap {
+        offset: [n(3), n(0)],
+        ..PlaneMap::identity()
+    };
+    let disc = Figure::disc(&n(5)).unwrap().mapped(&map).unwrap();
+    let kept = disc.right_of_axis().unwrap().unwrap();
+    let [lo, hi] = kept.bounds();
+    assert!(lo[0].abs() < 1e-12 && (hi[0] - 8.0).abs() < 1e-12);
+    let part = Primitive::revolution(kept, None).unwrap();
+    assert_eq!(check(part, swept_disc(3.0)), [0, 0, 0, 1]);
+    let kept = disc.mirrored_x().right_of_axis().unwrap().unwrap();
+    let part = Primitive::revolution(kept, None).unwrap();
+    assert_eq!(check(part, swept_disc(-3.0)), [0, 0, 0, 1]);
+}
+
 #[test]
 fn sections_combine_with_other_solids() {
     // A hole through a wall, at the corner of an L, and half outside.

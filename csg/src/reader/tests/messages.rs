@@ -31,7 +31,7 @@ fn arguments() {
     assert_snapshot!(padl("P = BLO(X=1, Y=2, Q=3)"), @"part:1:19: found the unknown argument `Q`, expected one of `X`, `Y`, `Z`");
     assert_snapshot!(padl("P = BLO(X=1, X=2, Z=3)"), @"part:1:14: found `X` a second time, expected each argument once");
     assert_snapshot!(padl("P = SPH(R=-3/2)"), @"part:1:12: found the value -1.5, expected a radius greater than zero");
-    assert_snapshot!(padl("P = TOR(RMAJ=2, RMIN=2)"), @"part:1:22: found the value 2, expected a minor radius less than the major radius");
+    assert_snapshot!(padl("P = TOR(RMAJ=2, RMIN=0)"), @"part:1:22: found the value 0, expected a minor radius greater than zero");
     assert_snapshot!(padl("P = CON(R=0, H=2)"), @"part:1:11: found the value 0, expected one radius greater than zero");
     assert_snapshot!(padl("P = BLO(1, 2, 3)"), @"part:1:9: found `1`, expected an argument, one of `X`, `Y`, `Z`");
     assert_snapshot!(padl("P = SPH R=1"), @"part:1:9: found `R`, expected `(` and the arguments of `SPH`");

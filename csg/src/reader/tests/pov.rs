@@ -139,7 +139,7 @@ fn what_is_not_ours() {
     assert_snapshot!(pov("union { sphere { 0, 1 } box { -1, 1 clipped_by { sphere { 0, 1 } } } }"), @"part:1:37: found the modifier `clipped_by`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("cylinder { 0, y, 1 open }"), @"part:1:20: found the modifier `open`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found what is outside of a solid, expected a solid, or `inverse` in an intersection or a difference");
-    assert_snapshot!(pov("torus { 1, 2 }"), @"part:1:12: found the value 2, expected a minor radius less than the major radius");
+    assert_snapshot!(pov("torus { 1, 0 }"), @"part:1:12: found the value 0, expected a minor radius greater than zero");
     assert_snapshot!(pov("box { 0, <1, 0, 1> }"), @"part:1:10: found a box without volume, expected two corners that differ along x, y and z");
     assert_snapshot!(pov("cylinder { y, y, 1 }"), @"part:1:18: found an axis without length, expected two points that differ");
     assert_snapshot!(pov("#declare R = sqrt(2);\nsphere { 0, R }"), @"part:1:14: found the unknown name `sqrt`, expected an exact number, or a name that is declared above");

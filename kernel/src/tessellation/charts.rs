@@ -96,10 +96,7 @@ impl Chart {
                 let q = f.coordinates(p) / *radius;
                 (q.xy() / (1.0 - q.z)).into()
             }
-            Self::Sheet(s, f, _) => {
-                let q = f.components(&Globe::Sheet(*s).direction(p));
-                (q.xy() / (1.0 - q.z)).into()
-            }
+            Self::Sheet(s, f, _) => projected(f, &Globe::Sheet(*s).direction(p)),
             Self::Torus(s, seams) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
                 let from = |i: usize, x: f64| turn(x - seams.at[i]);
@@ -132,6 +129,15 @@ impl Chart {
                 let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
                 Surface::Torus(*s).point(u, v)
             }
+        }
+    }
+
+    /// The positions of the upper and the lower pole of a torus that reaches its axis. Both may be
+    /// one point of the surface.
+    pub fn poles(&self) -> Option<[Point2<f64>; 2]> {
+        match self {
+            Self::Sheet(s, f, _) => Some([s.frame.z, -s.frame.z].map(|pole| projected(f, &pole))),
+            _ => None,
         }
     }
 
@@ -172,6 +178,12 @@ fn points_of<'a>(
         let nodes = lines.nodes(edge).iter();
         nodes.map(|n| lines.points[n.point as usize])
     })
+}
+
+/// The stereographic projection of a direction from the direction z.
+fn projected(f: &Frame, direction: &Vector3<f64>) -> Point2<f64> {
+    let q = f.components(direction);
+    (q.xy() / (1.0 - q.z)).into()
 }
 
 /// A surface that is projected by way of the unit sphere.

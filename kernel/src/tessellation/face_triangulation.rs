@@ -259,7 +259,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The positions of a chord's ends; on a torus continued from the chord's middle.
+    /// The positions of a chord's ends; on a torus continued from the chord's middle. The middle also
+    /// shows at which of two poles in one point the chord ends.
     fn places(&self, edge: EdgeId, nodes: [Node; 2]) -> [Point2<f64>; 2] {
         let mut ends = nodes.map(|n| self.fit.chart.map(&self.lines.points[n.point as usize]));
         if let Chart::Torus(torus, _) = self.fit.chart {
@@ -267,6 +268,18 @@ impl<'a> Builder<'a> {
             let middle = self.fit.chart.map(&self.brep.curve(edge).point(middle));
             for end in &mut ends {
                 *end = continued_from(torus, *end, &middle);
+            }
+        }
+        if let (Chart::Sheet(torus, ..), Some([upper, lower])) =
+            (self.fit.chart, self.fit.chart.poles())
+            && torus.poles().count() == 1
+        {
+            let middle = self.brep.curve(edge).point(0.5 * (nodes[0].t + nodes[1].t));
+            let is_up = torus.frame.coordinates(&middle).z > 0.0;
+            for (end, node) in ends.iter_mut().zip(nodes) {
+                if self.fit.is_apex(&self.lines.points[node.point as usize]) {
+                    *end = if is_up { upper } else { lower };
+                }
             }
         }
         ends
@@ -380,8 +393,8 @@ impl<'a> Builder<'a> {
                 self.add_cap(frame.point(0.0, 0.0, *radius), *cap);
             }
             Chart::Sheet(torus, frame, cap) => {
-                for pole in torus.poles() {
-                    self.add_pole(&pole);
+                for pole in self.fit.chart.poles().into_iter().flatten() {
+                    self.add_pole(pole);
                 }
                 self.add_point(Point2::origin());
                 if let Some(cap) = cap {

@@ -113,8 +113,8 @@ pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
     Expression::primitive(radius.and_then(|[r]| Ok(Primitive::sphere(r)?)))
 }
 
-/// A ring torus centred at the origin, with axis z: the radius of the circle that the tube's centre
-/// runs along, and the smaller radius of the tube.
+/// A torus centred at the origin, with axis z: the radius of the circle that the tube's centre runs
+/// along, and the radius of the tube. If the tube reaches the axis, there is no hole.
 ///
 /// # Examples
 ///
@@ -123,7 +123,8 @@ pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
 ///
 /// let solid = torus(5, 1).evaluate()?;
 /// assert_eq!(solid.genus(), [1]);
-/// assert!(torus(1, 5).evaluate().is_err());
+/// assert_eq!(torus(3, 5).evaluate()?.genus(), [0]);
+/// assert!(torus(5, 0).evaluate().is_err());
 /// # Ok::<(), premio::Error>(())
 /// ```
 pub fn torus(major: impl Into<ExactNumber>, minor: impl Into<ExactNumber>) -> Expression {

@@ -33,8 +33,7 @@ impl Builder<'_> {
     }
 
     /// Adds a pole of a torus, unless the centre of the projection is close to it.
-    pub(super) fn add_pole(&mut self, pole: &Point3<f64>) {
-        let at = self.fit.chart.map(pole);
+    pub(super) fn add_pole(&mut self, at: Point2<f64>) {
         if at.coords.norm() < FARTHEST {
             self.add_point(at);
         }
@@ -48,13 +47,10 @@ impl Builder<'_> {
             PositionInTriangulation::OnVertex(_) => false,
             _ => true,
         };
-        let p = self.fit.chart.lift(&at);
-        let is_corner = |c: &Corner| {
-            let known = &self.lines.points[c.point as usize];
-            self.fit.is_apex(known) && (known - p).norm() <= self.fit.accuracy.deviation * APEX
-        };
-        if is_free && !net.vertices().any(|v| is_corner(v.data())) {
-            let point = self.lines.add(p);
+        let near = APEX * (1.0 + at.coords.norm());
+        let is_here = |c: &Corner| (c.at - at).norm() <= near;
+        if is_free && !net.vertices().any(|v| is_here(v.data())) {
+            let point = self.lines.add(self.fit.chart.lift(&at));
             self.corner(at, point);
         }
     }

@@ -294,10 +294,7 @@ impl Primitive {
         height: Rational,
         top: Rational,
     ) -> Result<Self, PrimitiveError> {
-        positive(&height, Dimension::Height)?;
-        if top < Rational::ZERO {
-            return Err(PrimitiveError::Negative(Dimension::Top));
-        }
+        Self::check_prism(&height, &top)?;
         let is_oblique = |edge: &FigureEdge| {
             let mut arc = edge.arc.iter();
             arc.any(|arc| arc.centre.iter().any(|x| !x.is_zero()))
@@ -311,6 +308,15 @@ impl Primitive {
             height,
             top,
         })
+    }
+
+    /// Whether a prism may have this height and factor at the height.
+    pub(crate) fn check_prism(height: &Rational, top: &Rational) -> Result<(), PrimitiveError> {
+        positive(height, Dimension::Height)?;
+        match *top < Rational::ZERO {
+            true => Err(PrimitiveError::Negative(Dimension::Top)),
+            false => Ok(()),
+        }
     }
 
     /// A figure revolved about z, by an angle or a whole turn.

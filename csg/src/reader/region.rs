@@ -5,8 +5,10 @@
 
 use std::ops::Range;
 
+use premio_kernel::number::rational::Rational;
+
 use super::error::SpannedError;
-use crate::figure::{Figure, FigureError, FigureExpression, FigureOperation, PlaneMap};
+use crate::figure::{Figure, FigureError, FigureExpression, FigureOperation, OffsetJoin, PlaneMap};
 use crate::transform::Transform;
 
 /// The error of a figure that is not exact.
@@ -228,6 +230,63 @@ impl Region {
         let expression = self.expression(&mut figures)?;
         match Figure::evaluated(&figures.iter().collect::<Vec<_>>(), &expression) {
             Ok(figure) => Ok(Some(figure)),
+            Err(FigureError::Empty) => Ok(None),
+            Err(error) => Err(bad_figure(&error, span)),
+        }
+    }
+
+    /// The region moved in the plane.
+    pub fn moved(self, moves: &Transform) -> Self {
+        let motion = moves.motion();
+        let [[a, b, _], [c, d, _], _] = motion.rotation_matrix();
+        let [x, y, _] = motion.offset().clone();
+        let map = PlaneMap {
+            matrix: [[a, b], [c, d]],
+            offset: [x, y],
+        };
+        self.mapped(&map, Some(moves))
+    }
+
+    /// The convex hull of regions; `None` if all are empty.
+    pub fn hull<'r>(
+        regions: impl Iterator<Item = &'r Self>,
+        span: &Range<usize>,
+    ) -> Result<Option<Self>, SpannedError> {
+        let mut figures: Vec<Figure> = Vec::new();
+        for region in regions {
+            match region.figures()? {
+                Some(own) => figures.extend(own),
+                None => figures.extend(region.evaluated(span)?),
+            }
+        }
+        if figures.is_empty() {
+            return Ok(None);
+        }
+        let hull = Figure::hull_of(&figures.iter().collect::<Vec<_>>());
+        Self::made(hull, span)
+    }
+
+    /// The points within a distance of the region, or those farther than its negative inside it;
+    /// `None` if there are none.
+    pub fn offset(
+        &self,
+        distance: &Rational,
+        join: OffsetJoin,
+        span: &Range<usize>,
+    ) -> Result<Option<Self>, SpannedError> {
+        match self.evaluated(span)? {
+            Some(figure) => Self::made(figure.offset(distance, join), span),
+            None => Ok(None),
+        }
+    }
+
+    /// The region of a figure that was made; `None` if it is empty.
+    pub fn made(
+        figure: Result<Figure, FigureError>,
+        span: &Range<usize>,
+    ) -> Result<Option<Self>, SpannedError> {
+        match figure {
+            Ok(figure) => Ok(Some(Self::new(figure, span.clone()))),
             Err(FigureError::Empty) => Ok(None),
             Err(error) => Err(bad_figure(&error, span)),
         }

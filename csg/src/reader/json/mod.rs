@@ -2,6 +2,7 @@
 
 mod figure;
 mod polyhedron;
+mod region;
 mod value;
 
 use std::ops::Range;
@@ -11,9 +12,11 @@ use premio_kernel::number::rational::Rational;
 use self::value::{Content, Document, Member, Value, ValueId, parse};
 use super::error::SpannedError;
 use super::number::{bad_length, literal};
+use super::refusal::construction_error;
 use super::spanned::Spanned;
 use super::{PartPlace, Program, StandaloneText};
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
+use crate::construction::convex_hull;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{self, Transform};
 use crate::tree::Operation;
@@ -39,10 +42,18 @@ pub(super) fn read(source: &str) -> Result<Program, SpannedError> {
     })
 }
 
-const OPERATIONS: [(&str, Operation); 3] = [
-    ("union", Operation::Union),
-    ("intersection", Operation::Intersection),
-    ("difference", Operation::Difference),
+/// An operation on solids.
+#[derive(Debug, Clone, Copy)]
+enum SolidOperation {
+    Set(Operation),
+    Hull,
+}
+
+const OPERATIONS: [(&str, SolidOperation); 4] = [
+    ("union", SolidOperation::Set(Operation::Union)),
+    ("intersection", SolidOperation::Set(Operation::Intersection)),
+    ("difference", SolidOperation::Set(Operation::Difference)),
+    ("hull", SolidOperation::Hull),
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
@@ -63,9 +74,10 @@ const PRIMITIVES: [(&str, &[&str]); 10] = [
 enum Step {
     Enter(ValueId),
     Combine {
-        op: Operation,
+        op: SolidOperation,
         count: usize,
         moves: Transform,
+        span: Range<usize>,
     },
 }
 
@@ -85,9 +97,21 @@ impl<'a> Reader<'a> {
                         parts.push(part);
                     }
                 }
-                Step::Combine { op, count, moves } => {
+                Step::Combine {
+                    op,
+                    count,
+                    moves,
+                    span,
+                } => {
                     let children = parts.split_off(parts.len().saturating_sub(count));
-                    let part = self.builder.operation(op, &children);
+                    let part = match op {
+                        SolidOperation::Set(op) => self.builder.operation(op, &children),
+                        SolidOperation::Hull => {
+                            let hull = convex_hull(self.builder, &children, 0.0);
+                            hull.map_err(|error| construction_error(&error, &span))?
+                                .solid
+                        }
+                    };
                     parts.push(self.builder.moved(part, moves));
                 }
             }
@@ -148,6 +172,7 @@ impl<'a> Reader<'a> {
             op,
             count: children.len(),
             moves,
+            span: fields.span.clone(),
         });
         steps.extend(children.iter().rev().map(|&child| Step::Enter(child)));
         Ok(())
@@ -162,13 +187,15 @@ impl<'a> Reader<'a> {
         };
         let moves = fields.moves()?;
         let swept = match name.as_str() {
-            "prism" => Some(figure::prism(fields)?),
-            "revolution" => Some(figure::revolution(fields)?),
-            "polyhedron" => Some(polyhedron::polyhedron(fields)?),
+            "prism" => Some(figure::prism(self.builder, fields)?),
+            "revolution" => Some(figure::revolution(self.builder, fields)?),
+            "polyhedron" => {
+                let polyhedron = polyhedron::polyhedron(fields)?;
+                Some(self.builder.primitive(polyhedron))
+            }
             _ => None,
         };
-        if let Some(primitive) = swept {
-            let part = self.builder.primitive(primitive);
+        if let Some(part) = swept {
             return Ok(self.builder.moved(part, moves));
         }
         let lengths = fields.lengths(keys)?;
@@ -316,16 +343,7 @@ impl<'a> Fields<'a> {
                 let span = self.document.value(axis).span.clone();
                 SpannedError::input(span, error.to_string(), "an axis with a direction")
             })?;
-            let bits = moves.motion().bits();
-            if bits > MAX_MOTION_BITS {
-                let found = format!("a transform whose exact numbers take {bits} bits");
-                let span = self.document.value(id).span.clone();
-                return Err(SpannedError::limit(
-                    span,
-                    found,
-                    format!("at most {MAX_MOTION_BITS} bits"),
-                ));
-            }
+            check_bits(&moves, &self.document.value(id).span)?;
         }
         Ok(moves)
     }
@@ -383,6 +401,17 @@ impl<'a> Fields<'a> {
             axis: axis_id,
         })
     }
+}
+
+/// Limits the exact numbers of a transform.
+fn check_bits(moves: &Transform, span: &Range<usize>) -> Result<(), SpannedError> {
+    let bits = moves.motion().bits();
+    if bits <= MAX_MOTION_BITS {
+        return Ok(());
+    }
+    let found = format!("a transform whose exact numbers take {bits} bits");
+    let expected = format!("at most {MAX_MOTION_BITS} bits");
+    Err(SpannedError::limit(span.clone(), found, expected))
 }
 
 fn items<'a>(

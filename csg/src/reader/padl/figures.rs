@@ -17,9 +17,7 @@ use super::keywords::{Construction, Outline};
 use super::machine::Machine;
 use crate::builder::SolidId;
 use crate::construction::convex_hull;
-use crate::figure::{
-    ContourCorner, Figure, FigureArc, FigureError, FigureOperation, OffsetJoin, PlaneMap,
-};
+use crate::figure::{ContourCorner, Figure, FigureArc, FigureError, FigureOperation, OffsetJoin};
 use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
 use crate::primitive::{Dimension, Primitive, PrimitiveError, RevolutionAngle};
 use crate::transform::Transform;
@@ -117,14 +115,7 @@ impl Machine {
             return Ok(Value::Figure(None));
         };
         self.budget.count_edges(region.edge_count(), span)?;
-        let motion = moves.motion();
-        let [[a, b, _], [c, d, _], _] = motion.rotation_matrix();
-        let [x, y, _] = motion.offset().clone();
-        let map = PlaneMap {
-            matrix: [[a, b], [c, d]],
-            offset: [x, y],
-        };
-        let moved = Rc::unwrap_or_clone(region).mapped(&map, Some(moves));
+        let moved = Rc::unwrap_or_clone(region).moved(moves);
         Ok(Value::Figure(Some(Rc::new(moved))))
     }
 
@@ -216,22 +207,16 @@ impl Machine {
         operands: Vec<Operand>,
         span: &Range<usize>,
     ) -> Result<Value, SpannedError> {
-        let mut figures: Vec<Figure> = Vec::new();
+        let mut regions = Vec::with_capacity(operands.len());
         for operand in operands {
             let Some(region) = operand.figure("for `HULL`, as another operand is one")? else {
                 continue;
             };
             self.budget.count_edges(region.edge_count(), span)?;
-            match region.figures()? {
-                Some(own) => figures.extend(own),
-                None => figures.extend(region.evaluated(span)?),
-            }
+            regions.push(region);
         }
-        if figures.is_empty() {
-            return Ok(Value::Figure(None));
-        }
-        let hull = Figure::hull_of(&figures.iter().collect::<Vec<_>>());
-        figure_value(hull, span)
+        let hull = Region::hull(regions.iter().map(|region| &**region), span)?;
+        Ok(Value::Figure(hull.map(Rc::new)))
     }
 
     fn hull_of_solids(
@@ -360,15 +345,11 @@ fn offset(given: &Given, span: &Range<usize>) -> Result<Value, SpannedError> {
         let expected = "one of `R`, `DELTA` and `CHAMFER`";
         return Err(SpannedError::input(span.clone(), found, expected));
     };
-    let region = given.figure.as_ref().and_then(|known| known.value.as_ref());
-    let figure = region.map(|region| region.evaluated(span)).transpose()?;
-    let Some(figure) = figure.flatten() else {
+    let Some(region) = given.figure.as_ref().and_then(|known| known.value.as_ref()) else {
         return Ok(Value::Figure(None));
     };
-    match figure.offset(&distance.value, join) {
-        Err(FigureError::Empty) => Ok(Value::Figure(None)),
-        made => figure_value(made, span),
-    }
+    let offset = region.offset(&distance.value, join, span)?;
+    Ok(Value::Figure(offset.map(Rc::new)))
 }
 
 /// A polygon, or a figure with arcs, of contours.

@@ -95,3 +95,87 @@ fn figures_are_read_and_written() {
         assert!(found.contains(expected), "{found}");
     }
 }
+
+/// Expressions of figures are those of PADL.
+#[test]
+fn figures_are_expressions() {
+    let padl = |text: &str| tree(text, Format::Padl);
+    for (json_text, padl_text) in [
+        (
+            r#"{"prim":"prism","figure":{"prim":"square","size":[4,2]},"h":3}"#,
+            "P = PRI(SQU(X=4, Y=2), H=3)",
+        ),
+        (
+            r#"{"prim":"prism","h":3,"figure":{"op":"difference","children":[
+                {"prim":"circle","r":5},
+                {"prim":"square","size":[4,2],"transform":[{"rotate":30},{"translate":[1,0.5]}]}]}}"#,
+            "P = PRI(CIR(R=5) DIF SQU(X=4, Y=2) AT (ROTZ=30, MOVX=1, MOVY=0.5), H=3)",
+        ),
+        (
+            r#"{"prim":"prism","h":3,"top":0.5,"figure":{"op":"offset","delta":1,
+                "figure":{"prim":"polygon","contours":[[[0,0],[4,0],[0,3]]]}}}"#,
+            "P = PRI(OFF(PGN((0,0), (4,0), (0,3)), DELTA=1), H=3, TOP=0.5)",
+        ),
+        (
+            r#"{"prim":"revolution","angle":90,"figure":{"op":"hull","children":[
+                {"prim":"circle","r":1,"transform":[{"translate":[3,0]}]},
+                {"prim":"circle","r":1,"transform":[{"translate":[5,1]}]}]}}"#,
+            "P = REV(HULL(CIR(R=1) AT (MOVX=3), CIR(R=1) AT (MOVX=5, MOVY=1)), ANGLE=90)",
+        ),
+        (
+            r#"{"op":"hull","transform":[{"translate":[0,0,1]}],"children":[
+                {"prim":"sphere","r":1},
+                {"prim":"sphere","r":1,"transform":[{"translate":[4,0,0]}]}]}"#,
+            "P = HULL(SPH(R=1), SPH(R=1) AT (MOVX=4)) AT (MOVZ=1)",
+        ),
+    ] {
+        assert_eq!(json(json_text), padl(padl_text), "{json_text}");
+    }
+    let empty = r#"{"prim":"prism","h":1,"figure":{"op":"intersection","children":[
+        {"prim":"circle","r":1},{"prim":"circle","r":1,"transform":[{"translate":[3,0]}]}]}}"#;
+    assert!(json(empty).leaves().count() == 2 || json(empty).is_empty());
+    assert!(json(r#"{"prim":"prism","h":1,"figure":{"op":"union","children":[]}}"#).is_empty());
+    // An offset inwards of all of a figure.
+    let vanished = r#"{"prim":"prism","h":1,"figure":{"op":"offset","r":-2,
+        "figure":{"prim":"circle","r":1}}}"#;
+    assert!(json(vanished).is_empty());
+}
+
+#[test]
+fn wrong_expressions_of_figures_are_named() {
+    let prism = |figure: &str| format!(r#"{{"prim":"prism","h":1,"figure":{figure}}}"#);
+    for (figure, expected) in [
+        (r#"{"prim":"circle","r":0}"#, "a radius greater than zero"),
+        (r#"{"prim":"cricle","r":1}"#, "(did you mean `circle`?)"),
+        (
+            r#"{"prim":"square","size":[1,2,3]}"#,
+            "an array of two numbers",
+        ),
+        (
+            r#"{"op":"offset","figure":{"prim":"circle","r":1}}"#,
+            "one of `r`, `delta` and `chamfer`",
+        ),
+        (
+            r#"{"op":"offset","r":1,"delta":1,"figure":{"prim":"circle","r":1}}"#,
+            "one of `r`, `delta` and `chamfer`",
+        ),
+        (
+            r#"{"op":"union","children":[7]}"#,
+            "a figure: an object with `op` or `prim`",
+        ),
+        (
+            r#"{"prim":"circle","r":1,"transform":[{"translate":[1,2,3]}]}"#,
+            "an array of two numbers",
+        ),
+        (r#"{"radius":1}"#, "`op` or `prim`"),
+        ("7", "an array of contours, or a figure as an object"),
+    ] {
+        let found = message(&prism(figure), Format::Json);
+        assert!(found.contains(expected), "{figure}: {found}");
+    }
+    let flat = r#"{"prim":"prism","h":0,"figure":{"prim":"circle","r":1}}"#;
+    assert!(message(flat, Format::Json).contains("a height greater than zero"));
+    let hull =
+        r#"{"op":"hull","children":[{"prim":"sphere","r":1},{"prim":"block","size":[1,1,1]}]}"#;
+    assert!(message(hull, Format::Json).contains("balls of one radius"));
+}

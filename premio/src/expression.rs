@@ -4,14 +4,17 @@ mod description;
 mod operators;
 mod primitives;
 
-pub use primitives::{block, cone, cylinder, frustum, sphere, torus, wedge};
+pub use primitives::{block, cone, cylinder, frustum, polyhedron, sphere, torus, wedge};
 
 use crate::number::{ExactNumber, NumberError};
 use crate::solid::Solid;
 use crate::{Error, Rational, Result};
 use description::Description;
 use premio_csg::builder::{Builder, SolidId};
+use premio_csg::construction::{ConstructionError, convex_hull};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::figure::FigureError;
+use premio_csg::polyhedron::PolyhedronError;
 use premio_csg::primitive::{Primitive, PrimitiveError};
 use premio_csg::reader::{Format, Note};
 use premio_csg::recover::recovered;
@@ -34,7 +37,7 @@ use std::sync::Arc;
 /// let error = block(1, 1, 1).scale(-2).evaluate().unwrap_err();
 /// assert!(matches!(error, premio::Error::Expression(premio::ExpressionError::Factor)));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpressionError {
     /// A length or an angle is not a number.
@@ -49,6 +52,18 @@ pub enum ExpressionError {
     /// A factor is not above zero.
     #[error("a scale factor must be greater than zero")]
     Factor,
+    /// The angle of a revolution is not between 0 and 360 degrees.
+    #[error("the angle of a revolution must be between 0 and 360 degrees")]
+    Angle,
+    /// A figure of the plane is not exact.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// Faces bound no polyhedron.
+    #[error(transparent)]
+    Polyhedron(#[from] PolyhedronError),
+    /// A hull is not exact.
+    #[error(transparent)]
+    Construction(#[from] ConstructionError),
 }
 
 /// A solid as an expression of primitives, set operations and motions.
@@ -78,6 +93,7 @@ enum Node {
     Empty,
     Leaf(Primitive),
     Operation(Operation, Vec<Arc<Node>>),
+    Hull(Vec<Arc<Node>>),
     Moved(Arc<Node>, Transform),
     MirroredY(Arc<Node>),
     Scaled(Arc<Node>, Rational),
@@ -93,7 +109,7 @@ struct BuiltExpression {
 impl Node {
     fn children(&self) -> &[Arc<Node>] {
         match self {
-            Self::Operation(_, children) => children,
+            Self::Operation(_, children) | Self::Hull(children) => children,
             Self::Moved(child, _) | Self::MirroredY(child) | Self::Scaled(child, _) => {
                 std::slice::from_ref(child)
             }
@@ -103,7 +119,7 @@ impl Node {
 
     fn take_children(&mut self) -> Vec<Arc<Node>> {
         match self {
-            Self::Operation(_, children) => std::mem::take(children),
+            Self::Operation(_, children) | Self::Hull(children) => std::mem::take(children),
             Self::Moved(child, _) | Self::MirroredY(child) | Self::Scaled(child, _) => {
                 vec![std::mem::replace(child, Arc::new(Self::Empty))]
             }
@@ -160,7 +176,7 @@ fn nodes(root: &Arc<Node>) -> Vec<&Arc<Node>> {
 }
 
 impl Expression {
-    fn primitive(primitive: Result<Primitive, ExpressionError>) -> Self {
+    pub(crate) fn primitive(primitive: Result<Primitive, ExpressionError>) -> Self {
         Self(primitive.map(|primitive| Arc::new(Node::Leaf(primitive))))
     }
 
@@ -195,6 +211,26 @@ impl Expression {
         let nodes: Result<Vec<Arc<Node>>, ExpressionError> =
             parts.into_iter().map(|part| part.0).collect();
         Self(nodes.map(|nodes| Arc::new(Node::Operation(op, nodes))))
+    }
+
+    /// The convex hull of several expressions, where its faces are on planes, cylinders, cones,
+    /// spheres and tori.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let rod = Expression::hull([sphere(1), sphere(1).translate([6, 0, 0])]).evaluate()?;
+    /// assert!((rod.volume() - (6.0 + 4.0 / 3.0) * std::f64::consts::PI).abs() < 1e-12);
+    /// let other = Expression::hull([sphere(1), sphere(2).translate([6, 1, 0])]);
+    /// assert!(other.evaluate().is_ok());
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn hull(parts: impl IntoIterator<Item = Self>) -> Self {
+        let nodes: Result<Vec<Arc<Node>>, ExpressionError> =
+            parts.into_iter().map(|part| part.0).collect();
+        Self(nodes.map(|nodes| Arc::new(Node::Hull(nodes))))
     }
 
     fn map(self, wrap: impl FnOnce(Arc<Node>) -> Result<Node, ExpressionError>) -> Self {
@@ -378,7 +414,7 @@ impl Expression {
 
     /// The solid of the expression, in a builder of its own.
     fn build(&self) -> Result<BuiltExpression> {
-        let root = self.0.as_ref().map_err(|error| *error)?;
+        let root = self.0.as_ref().map_err(Clone::clone)?;
         let mut builder = Builder::new();
         let mut built: HashMap<*const Node, SolidId> = HashMap::new();
         let mut last = SolidId::EMPTY;
@@ -390,6 +426,11 @@ impl Expression {
                 Node::Operation(op, children) => {
                     let children: Vec<SolidId> = children.iter().map(child).collect();
                     builder.operation(*op, &children)
+                }
+                Node::Hull(children) => {
+                    let children: Vec<SolidId> = children.iter().map(child).collect();
+                    let hull = convex_hull(&mut builder, &children, 0.0);
+                    hull.map_err(ExpressionError::Construction)?.solid
                 }
                 Node::Moved(inner, transform) => builder.moved(child(inner), transform.clone()),
                 Node::MirroredY(inner) => builder.mirrored_y(child(inner)),
@@ -535,7 +576,9 @@ fn vector<N: Into<ExactNumber>>(of: [N; 3]) -> Result<[Rational; 3], ExpressionE
     numbers(of.map(Into::into))
 }
 
-fn numbers<const N: usize>(of: [ExactNumber; N]) -> Result<[Rational; N], ExpressionError> {
+pub(crate) fn numbers<const N: usize>(
+    of: [ExactNumber; N],
+) -> Result<[Rational; N], ExpressionError> {
     let mut values = [const { Rational::ZERO }; N];
     for (value, number) in values.iter_mut().zip(of) {
         *value = number.value()?;

@@ -75,6 +75,7 @@ mod predict;
 pub mod prelude;
 mod progress;
 mod read;
+mod sketch;
 mod solid;
 mod topology;
 mod view;
@@ -83,7 +84,7 @@ mod write;
 pub use camera::Camera;
 pub use error::{Error, Result};
 pub use expression::{
-    Expression, ExpressionError, block, cone, cylinder, frustum, sphere, torus, wedge,
+    Expression, ExpressionError, block, cone, cylinder, frustum, polyhedron, sphere, torus, wedge,
 };
 pub use find::{PartFinder, PartTracker, PictureMatch};
 pub use mesh::{Fineness, TriangleMesh};
@@ -96,12 +97,14 @@ pub use picture::{
 pub use predict::{PredictionAgreement, read_setup, read_setups, rendered};
 pub use progress::{CancelToken, Cancelled, Progress, ProgressStep};
 pub use read::{read, read_bytes, read_text, read_with};
+pub use sketch::{Sketch, disc, polygon, rectangle};
 pub use solid::Solid;
 pub use topology::{EdgeRef, FaceRef, VertexRef};
 pub use view::{View, ViewArc};
 pub use write::{ExportSettings, SolidFormat, sheet_to_dxf, sheet_to_svg};
 
 pub use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions};
+pub use premio_csg::figure::{Figure, OffsetJoin};
 pub use premio_csg::lettering::Fonts;
 pub use premio_csg::reader::{FacetLimit, Format, Includes, ReadOptions, ValueOverride};
 pub use premio_csg::recover::rounding::Rounding;

@@ -12,8 +12,9 @@
 pub use crate::{
     Camera, CameraFile, CancelToken, ContourKind, Curve, Detector, Drawing, DrawingOptions,
     EdgeRef, EvaluationOptions, ExactNumber, ExportSettings, Expression, FaceRef, Fineness, Format,
-    Grey, ImageCurve, JunctionKind, Model, Operation, Paper, PartFinder, PartTracker, PictureMatch,
-    Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions, Solid,
-    SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, ValueOverride, VertexRef,
-    View, ViewArc, block, cone, cylinder, frustum, sphere, torus, wedge,
+    Grey, ImageCurve, JunctionKind, Model, OffsetJoin, Operation, Paper, PartFinder, PartTracker,
+    PictureMatch, Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions,
+    Sketch, Solid, SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, ValueOverride,
+    VertexRef, View, ViewArc, block, cone, cylinder, disc, frustum, polygon, polyhedron, rectangle,
+    sphere, torus, wedge,
 };

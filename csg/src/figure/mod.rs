@@ -25,6 +25,7 @@ mod stroke;
 mod winding;
 mod wrapping;
 
+use crate::transform::Transform;
 use premio_kernel::number::rational::{Rational, from_f64, to_f64};
 
 pub(crate) use convex_hull::outer_tangent;
@@ -125,6 +126,17 @@ impl PlaneMap {
         Self {
             matrix: [[one(), zero()], [zero(), one()]],
             offset: [zero(), zero()],
+        }
+    }
+
+    /// The part of a motion in the plane of x and y.
+    pub fn from_transform(moves: &Transform) -> Self {
+        let motion = moves.motion();
+        let [[a, b, _], [c, d, _], _] = motion.rotation_matrix();
+        let [x, y, _] = motion.offset().clone();
+        Self {
+            matrix: [[a, b], [c, d]],
+            offset: [x, y],
         }
     }
 

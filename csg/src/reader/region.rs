@@ -237,14 +237,7 @@ impl Region {
 
     /// The region moved in the plane.
     pub fn moved(self, moves: &Transform) -> Self {
-        let motion = moves.motion();
-        let [[a, b, _], [c, d, _], _] = motion.rotation_matrix();
-        let [x, y, _] = motion.offset().clone();
-        let map = PlaneMap {
-            matrix: [[a, b], [c, d]],
-            offset: [x, y],
-        };
-        self.mapped(&map, Some(moves))
+        self.mapped(&PlaneMap::from_transform(moves), Some(moves))
     }
 
     /// The convex hull of regions; `None` if all are empty.

@@ -2,7 +2,9 @@
 
 use super::{Expression, numbers};
 use crate::number::ExactNumber;
+use premio_csg::polyhedron::{Polyhedron, PolyhedronFace};
 use premio_csg::primitive::Primitive;
+use std::sync::Arc;
 
 /// A block with a corner at the origin and edges along the positive axes.
 ///
@@ -130,4 +132,34 @@ pub fn sphere(radius: impl Into<ExactNumber>) -> Expression {
 pub fn torus(major: impl Into<ExactNumber>, minor: impl Into<ExactNumber>) -> Expression {
     let lengths = numbers([major.into(), minor.into()]);
     Expression::primitive(lengths.and_then(|[a, b]| Ok(Primitive::torus(a, b)?)))
+}
+
+/// A polyhedron: its corners, and its faces as lists of their indices, counterclockwise as seen from
+/// the outside. If all faces are clockwise, they are turned. A face that is not plane is cut into
+/// triangles.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let corners = [[0, 0, 0], [3, 0, 0], [0, 3, 0], [0, 0, 3]];
+/// let faces = [vec![0, 2, 1], vec![0, 1, 3], vec![0, 3, 2], vec![1, 2, 3]];
+/// assert!((polyhedron(corners, faces.clone()).evaluate()?.volume() - 4.5).abs() < 1e-12);
+/// // Without its last face it is open.
+/// assert!(polyhedron(corners, faces[..3].to_vec()).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn polyhedron<N: Into<ExactNumber>>(
+    corners: impl IntoIterator<Item = [N; 3]>,
+    faces: impl IntoIterator<Item = Vec<usize>>,
+) -> Expression {
+    let corners = corners.into_iter();
+    let points: Result<Vec<_>, _> = corners.map(|c| numbers(c.map(Into::into))).collect();
+    let faces: Vec<PolyhedronFace> = faces.into_iter().map(PolyhedronFace::simple).collect();
+    Expression::primitive(points.and_then(|points| {
+        let made = Polyhedron::from_faces(&points, &faces)?;
+        let polyhedron = Arc::new(made.polyhedron);
+        Ok(Primitive::Polyhedron { polyhedron })
+    }))
 }

@@ -70,12 +70,15 @@ enum Combination {
 /// A pending step; the regions made so far are on a stack.
 enum Step {
     Enter(ValueId),
-    Combine {
-        how: Combination,
-        count: usize,
-        moves: Transform,
-        span: Range<usize>,
-    },
+    Combine(Box<PendingOperation>),
+}
+
+/// An operation whose operands are made first.
+struct PendingOperation {
+    how: Combination,
+    count: usize,
+    moves: Transform,
+    span: Range<usize>,
 }
 
 /// The region that an expression describes; `None` if it is empty.
@@ -85,15 +88,10 @@ pub(super) fn region(document: &Document, root: ValueId) -> Result<Option<Region
     while let Some(step) = steps.pop() {
         match step {
             Step::Enter(id) => regions.extend(enter(document, id, &mut steps)?),
-            Step::Combine {
-                how,
-                count,
-                moves,
-                span,
-            } => {
-                let operands = regions.split_off(regions.len().saturating_sub(count));
-                let made = combined(how, operands, &span)?;
-                regions.push(made.map(|region| region.moved(&moves)));
+            Step::Combine(pending) => {
+                let operands = regions.split_off(regions.len().saturating_sub(pending.count));
+                let made = combined(pending.how, operands, &pending.span)?;
+                regions.push(made.map(|region| region.moved(&pending.moves)));
             }
         }
     }
@@ -167,12 +165,12 @@ fn operation(
             (offset(fields)?, vec![fields.require("figure")?.value])
         }
     };
-    steps.push(Step::Combine {
+    steps.push(Step::Combine(Box::new(PendingOperation {
         how,
         count: operands.len(),
         moves: moves(fields)?,
         span: fields.span.clone(),
-    });
+    })));
     steps.extend(operands.into_iter().rev().map(Step::Enter));
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! `.json`: the tree itself.
 
+mod contours;
 mod figure;
 mod polyhedron;
 mod region;

@@ -7,7 +7,7 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::number::bad_length;
 use super::super::region::Region;
-use super::figure::contours;
+use super::contours::contours;
 use super::value::{Content, Document, Member, ValueId};
 use super::{Fields, Length, check_bits, choice, lengths, number, numbers};
 use crate::figure::{Figure, FigureOperation, OffsetJoin};

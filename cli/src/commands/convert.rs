@@ -86,6 +86,6 @@ fn lost(tree: &Tree, again: &Tree, target: Format) -> Option<String> {
             tree.leaves().count(),
             off.furthest
         ),
-        None => format!("the part cannot be held exactly by .{what}"),
+        None => format!("the part becomes another tree in .{what}; the points are not compared"),
     })
 }

@@ -185,12 +185,25 @@ fn node(primitive: &Primitive) -> String {
         }
         Primitive::Sphere { radius } => format!("sphere({SMOOTH}, r = {});", decimal(radius)),
         Primitive::Torus { major, minor } => {
-            let [major, minor] = [major, minor].map(decimal);
-            format!(
-                "rotate_extrude(angle = 360, {SMOOTH}) {{ \
-                 multmatrix([[1, 0, 0, {major}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ \
-                 circle({SMOOTH}, r = {minor}); }} }}"
-            )
+            let disc = format!(
+                "multmatrix([[1, 0, 0, {}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ \
+                 circle({SMOOTH}, r = {}); }}",
+                decimal(major),
+                decimal(minor)
+            );
+            // OpenSCAD revolves no figure that crosses the axis.
+            let kept = match minor > major {
+                true => format!(
+                    "intersection() {{ {disc} \
+                     multmatrix([[1, 0, 0, 0], [0, 1, 0, {}], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ \
+                     square(size = [{}, {}], center = false); }} }}",
+                    decimal(&-minor),
+                    decimal(&(major + minor)),
+                    decimal(&(minor + minor))
+                ),
+                false => disc,
+            };
+            format!("rotate_extrude(angle = 360, {SMOOTH}) {{ {kept} }}")
         }
         Primitive::Prism {
             figure,

@@ -141,6 +141,16 @@ pub enum Dimension {
     Minor,
 }
 
+impl Dimension {
+    /// Checks that a length is greater than zero.
+    ///
+    /// # Errors
+    /// It is not.
+    pub fn check_positive(self, length: &Rational) -> Result<(), PrimitiveError> {
+        positive(length, self)
+    }
+}
+
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

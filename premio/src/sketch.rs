@@ -5,7 +5,7 @@ use crate::number::ExactNumber;
 use premio_csg::figure::{
     ContourCorner, Figure, FigureError, FigureOperation, OffsetJoin, PlaneMap,
 };
-use premio_csg::primitive::{Primitive, RevolutionAngle};
+use premio_csg::primitive::{Dimension, Primitive, RevolutionAngle};
 use premio_csg::transform::{Transform, TransformStep};
 use premio_kernel::number::rational::Rational;
 use std::iter::Sum;
@@ -47,7 +47,8 @@ pub struct Sketch(Result<Option<Arc<Figure>>, ExpressionError>);
 pub fn rectangle(x: impl Into<ExactNumber>, y: impl Into<ExactNumber>) -> Sketch {
     let size = numbers([x.into(), y.into()]);
     Sketch(size.and_then(|size| {
-        Primitive::block([size[0].clone(), size[1].clone(), Rational::ONE])?;
+        Dimension::X.check_positive(&size[0])?;
+        Dimension::Y.check_positive(&size[1])?;
         Ok(made(Figure::rectangle(&size))?)
     }))
 }
@@ -66,7 +67,7 @@ pub fn rectangle(x: impl Into<ExactNumber>, y: impl Into<ExactNumber>) -> Sketch
 pub fn disc(radius: impl Into<ExactNumber>) -> Sketch {
     let radius = numbers([radius.into()]);
     Sketch(radius.and_then(|[radius]| {
-        Primitive::sphere(radius.clone())?;
+        Dimension::Radius.check_positive(&radius)?;
         Ok(made(Figure::disc(&radius))?)
     }))
 }

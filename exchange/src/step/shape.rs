@@ -242,7 +242,7 @@ impl<'s, 'e> Shape<'s, 'e> {
 
     fn curve(&mut self, index: usize, edge: &SeamedEdge<'_>) -> Result<Id, StepError> {
         let edge = &started_far_from_zero(edge);
-        let bent = |&f: &usize| bends(edge, &self.seamed.faces[f].window);
+        let bent = |&f: &usize| needs_parameter_curve(edge, &self.seamed.faces[f].window);
         let is_bent = self.sides[index].iter().any(bent);
         let id = match &*edge.curve {
             Curve::Line(c) => {
@@ -271,7 +271,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             }
         };
         let mut sides = self.sides[index].clone();
-        sides.retain(|&f| bends(edge, &self.seamed.faces[f].window));
+        sides.retain(|&f| needs_parameter_curve(edge, &self.seamed.faces[f].window));
         if sides.is_empty() {
             return Ok(id);
         }
@@ -383,21 +383,21 @@ fn half_angle(cone: &Cone) -> f64 {
     cone.sin.atan2(cone.cos)
 }
 
-/// Whether a file gives an edge in the parameters of a surface. Readers know which line or conic an
-/// edge is on the surfaces of their own, but not on a surface of revolution; a seam never needs it.
-fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
+/// Whether a file gives the curve of an edge in the parameters of a surface. Readers find a straight
+/// line or a conic in the parameters of an elementary surface by themselves, and a seam always.
+fn needs_parameter_curve(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
     }
     if matches!(window.surface, Surface::Torus(torus) if !torus.is_ring()) {
         return true;
     }
-    winds(edge, window)
+    bends(edge, window)
 }
 
 /// Whether an edge is neither a straight line nor a conic in the parameters of a surface: both of
 /// them change, and one is an angle.
-fn winds(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
+fn bends(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> bool {
     let [lo, hi] = edge.range;
     let on = |k: u32| window.parameters_at(&edge.curve.point(lo + (hi - lo) * f64::from(k) / 8.0));
     let middle = on(4);

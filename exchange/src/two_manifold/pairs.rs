@@ -1,6 +1,5 @@
 //! Splits edges into pairs of faces that enclose material, and vertices into fans.
 
-use super::seams::is_ring;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{CoedgeId, EdgeId, FaceId, Sense, VertexId};
 use premio_kernel::geometry::surface::Surface;
@@ -40,9 +39,7 @@ impl Pairs {
             let rings = pairs.rings_of(brep, face, &partner);
             pairs.rings.push(match brep.surface(face) {
                 // Loops around a torus close where the face touches itself, and not before.
-                surface if is_ring(surface) => rings,
-                // A loop through both poles of a horn torus passes one vertex twice.
-                Surface::Torus(torus) if torus.poles().count() == 1 => rings,
+                Surface::Torus(_) => rings,
                 _ => rings.into_iter().flat_map(|r| simple(brep, r)).collect(),
             });
         }

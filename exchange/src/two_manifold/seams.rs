@@ -1,11 +1,12 @@
 //! The seams of a face.
 //!
 //! A seam is a ruling of a cylinder or a cone, a meridian of a sphere or of a torus that reaches its
-//! axis, a circle about the tube of any other torus or a parallel of it. Its crossings with the edges of its face determine which part of it
-//! lies in the face (`kernel::brep::surface_path`). Of several candidate tracks the one with the
-//! fewest cuts is used. Two seams of a torus cross in a vertex of their own.
+//! axis, a circle about the tube of any other torus or a parallel of it. Its crossings with the edges
+//! of its face determine which part of it lies in the face (`kernel::brep::surface_path`). Of several
+//! candidate tracks the one with the fewest cuts is used. Two seams of a torus cross in a vertex of
+//! their own.
 
-mod parting;
+mod splitting;
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
@@ -164,7 +165,7 @@ impl Faced<'_> {
             true => least(found.filter(cuts_something))?,
             false => self.unless_parted(&whole, 0, least(found))?,
         };
-        if is_ring(&surface) {
+        if surface.is_ring_torus() {
             let candidates = self.samples.candidates(&cut.window, 1);
             let found = candidates.into_iter().map(|v| {
                 let seams = self.seams(&cut.window.surface, 1, v)?;
@@ -177,12 +178,12 @@ impl Faced<'_> {
             let other = self.unless_parted(&cut.window, 1, least(found))?;
             cut.window = other.window;
             cut.seams.extend(other.seams);
-            cut.part_at_crossing();
+            cut.split_at_crossing();
         }
         if let Surface::Torus(torus) = surface
-            && torus.poles().count() == 1
+            && torus.is_horn()
         {
-            cut.part_between_poles();
+            cut.split_between_poles();
         }
         Some(cut)
     }
@@ -191,7 +192,7 @@ impl Faced<'_> {
     /// loop through a pole, where the angle is undefined, is inconclusive.
     fn winds(&self, window: &ParameterWindow, i: usize) -> bool {
         // A face of a torus that touches itself is closed thereby, and still winds around.
-        if is_ring(&window.surface) {
+        if window.surface.is_ring_torus() {
             return false;
         }
         let mut senses = self
@@ -401,9 +402,9 @@ impl Faced<'_> {
         ruling(surface, from, course)
     }
 
-    /// The meridian of a torus that reaches its axis, from pole to pole. If edges end at a pole, it
-    /// ends beside it. None if edges end at one pole and the other is inside the face: readers drop a
-    /// seam that leads from a pole to an edge of such a loop.
+    /// The meridian of a torus that reaches its axis, from pole to pole. Where edges end at a pole, it
+    /// ends before the pole. None if edges end at one pole and the other is inside the face: readers
+    /// drop a seam that leads from a pole to an edge of such a loop.
     fn sheet_track(&self, surface: &Surface, s: &Torus) -> Option<Track> {
         let end = s.pole_angle();
         let near = self.resolution / s.minor;
@@ -563,11 +564,6 @@ fn tube_track(surface: &Surface, s: &Torus, at: f64, start: f64) -> Track {
         by: 1.0 / s.minor,
         course: Course::Round,
     }
-}
-
-/// Whether a surface is a torus whose tube does not reach the axis.
-pub(super) fn is_ring(surface: &Surface) -> bool {
-    matches!(surface, Surface::Torus(torus) if torus.is_ring())
 }
 
 /// The number of starting points tried for a closed seam.

@@ -63,7 +63,7 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
         }
     }
     if let Surface::Torus(t) = surface {
-        points.retain(|p| t.own_sheet([p.x, p.y, p.z]).reaches(N::ZERO));
+        points.retain(|p| t.sheet_level([p.x, p.y, p.z]).reaches(N::ZERO));
     }
     points.extend(surface.apexes());
     // Edges close to such a point give the same box, to rounding.

@@ -250,31 +250,12 @@ impl<'a, N: Float> FaceLocator<'a, N> {
                 decided => return decided,
             }
         }
-        let Some(way) = self.toric_way(torus, p, k, turn) else {
-            return Outcome::Unclear;
-        };
-        for leg in &way {
-            match self.take(leg) {
-                Outcome::Nothing => {}
-                decided => return decided,
-            }
-        }
-        // The last leg passes through the target. If nothing was found, the target was missed.
-        Outcome::Unclear
+        self.take_all(self.toric_way(torus, p, k, turn))
     }
 
     /// The k-th path to a point of the boundary of a face of a torus that reaches its axis.
     fn on_sheet(&self, torus: &Torus<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
-        let Some(way) = self.way_on_sheet(torus, p, k, turn) else {
-            return Outcome::Unclear;
-        };
-        for leg in &way {
-            match self.take(leg) {
-                Outcome::Nothing => {}
-                decided => return decided,
-            }
-        }
-        Outcome::Unclear
+        self.take_all(self.way_on_sheet(torus, p, k, turn))
     }
 
     /// A parallel to the meridian of a point of the boundary, and that meridian through the point;
@@ -393,6 +374,18 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             }
         }
         self.take(walk)
+    }
+
+    /// Follows the legs of a path whose last leg passes through a target.
+    fn take_all(&self, way: Option<Vec<SurfacePath<N>>>) -> Outcome {
+        for leg in way.iter().flatten() {
+            match self.take(leg) {
+                Outcome::Nothing => {}
+                decided => return decided,
+            }
+        }
+        // If nothing was found, the target was missed.
+        Outcome::Unclear
     }
 
     fn take(&self, walk: &SurfacePath<N>) -> Outcome {

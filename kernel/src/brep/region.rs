@@ -115,7 +115,7 @@ pub(super) fn regions<'a, N: Float>(
         parent,
         winding: [false; 2],
     };
-    if is_ring(surface) {
+    if surface.is_ring_torus() {
         for ring in loops {
             let [around, along] = sorter.turns(ring).winds;
             sorter.winding[0] |= around;
@@ -500,7 +500,7 @@ impl<N: Float> Sorter<'_, N> {
     /// The Euler characteristic of a region.
     fn euler(&self, loops: &[Vec<DirectedArc<'_, N>>], list: &[usize]) -> i32 {
         let n = list.len() as i32;
-        if !is_ring(self.surface) {
+        if !self.surface.is_ring_torus() {
             return 2 - n;
         }
         // A region with a loop that is not contractible is an annulus with holes; one with a
@@ -509,11 +509,6 @@ impl<N: Float> Sorter<'_, N> {
         let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area.is_above_zero());
         if is_part_of_sphere { 2 - n } else { -n }
     }
-}
-
-/// Whether a surface is a torus whose tube does not reach the axis. Its loops may not separate it.
-fn is_ring<N: Float>(surface: &Surface<N>) -> bool {
-    matches!(surface, Surface::Torus(torus) if torus.is_ring())
 }
 
 /// Whether paths down the rulings or the meridians of a surface connect its loops.

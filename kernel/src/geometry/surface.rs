@@ -68,6 +68,12 @@ impl<N: Float> Torus<N> {
         self.minor.is_short_of(self.major)
     }
 
+    /// Whether both poles are one point.
+    pub fn is_horn(&self) -> bool {
+        self.pole_height()
+            .is_some_and(|height| height.is_at_most(N::ZERO))
+    }
+
     /// The greatest distance from the axis.
     pub fn reach(&self) -> N {
         self.major + self.minor
@@ -108,7 +114,7 @@ impl<N: Float> Torus<N> {
 
     /// The distance from a pole within which the sheet is within the resolution of the axis, so that
     /// its normal is not known. The sheet leaves the axis along it where both poles are one point.
-    pub fn pole_blur(&self, resolution: N) -> N {
+    pub fn pole_neighbourhood(&self, resolution: N) -> N {
         let along = (N::TWO * self.minor * resolution).sqrt();
         match self.pole_height() {
             Some(height) if height > N::ZERO => along.min(resolution * self.minor / height),
@@ -116,10 +122,9 @@ impl<N: Float> Torus<N> {
         }
     }
 
-    /// A measure of how far a point of either sheet is from the poles: positive on this sheet,
-    /// negative on the other, with a gradient of about one at the poles. The sphere through the
-    /// poles separates the sheets.
-    pub fn own_sheet<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
+    /// The side of the sphere through the poles, which separates the sheets: positive on this sheet,
+    /// negative on the other, zero at the poles.
+    pub fn sheet_level<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
         let [x, y, z] = self.frame.local(p);
         let square = S::constant((self.minor - self.major) * self.reach());
         let beyond = x.square() + y.square() + z.square() - square;
@@ -321,6 +326,11 @@ impl<N: Float> Surface<N> {
         }
     }
 
+    /// Whether it is a torus whose tube does not reach the axis.
+    pub fn is_ring_torus(&self) -> bool {
+        matches!(self, Self::Torus(torus) if torus.is_ring())
+    }
+
     /// The points at which the surface has no normal: the apex of a cone, the poles of a torus.
     pub fn apexes(&self) -> impl Iterator<Item = Point3<N>> + use<N> {
         let (apex, torus) = match self {
@@ -486,8 +496,8 @@ mod tests {
                     assert_relative_eq!(surface.parameters(&p)[1], v, epsilon = 1e-12);
                     assert!(surface.distance(&p).abs() < 1e-13);
                     assert!(surface.polynomial(&p).abs() < 1e-10);
-                    assert!(own.own_sheet([p.x, p.y, p.z]) > 0.0);
-                    assert!(other.own_sheet([p.x, p.y, p.z]) < 0.0);
+                    assert!(own.sheet_level([p.x, p.y, p.z]) > 0.0);
+                    assert!(other.sheet_level([p.x, p.y, p.z]) < 0.0);
                     assert!(Surface::Torus(other).distance(&p).abs() > 0.1);
                 }
             }

@@ -79,7 +79,7 @@ impl<N: Float> TorusCurve<N> {
             let (sin, cos) = angle.sin_cos();
             let frame = &circle.frame;
             let p = frame.point(circle.radius * cos, circle.radius * sin, N::ZERO);
-            if self.torus.own_sheet([p.x, p.y, p.z]) < N::ZERO {
+            if self.torus.sheet_level([p.x, p.y, p.z]) < N::ZERO {
                 continue;
             }
             let slack = (error * circle.radius + resolution) / self.torus.minor;

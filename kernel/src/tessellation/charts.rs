@@ -3,8 +3,9 @@
 //! A plane is its own chart. A cylinder and a cone are projected along their axis, the cylinder as
 //! if it widened. A sphere is projected stereographically from a point outside the face. If the
 //! face has no outside, the centre is a point of the face, and a cap about it is left out. A torus
-//! that reaches its axis is mapped to a sphere, latitude by latitude. Any other torus is cut along a parallel and a circle of the tube, the seams, and unrolled. The seams exist in
-//! the chart only, and are placed away from vertices and from points where edges turn back.
+//! that reaches its axis is mapped to a sphere, latitude by latitude. Any other torus is cut along a
+//! parallel and a circle of the tube, the seams, and unrolled. The seams exist in the chart only, and
+//! are placed away from vertices and from points where edges turn back.
 
 use super::Accuracy;
 use super::edges::{Polylines, STEEPEST, off_chord};
@@ -63,12 +64,12 @@ impl Chart {
             }
             Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
-                let around = Around::new(brep, face, Globe::Sphere(s), lines);
+                let around = Around::new(brep, face, SphericalMap::Sphere(s), lines);
                 let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
                 Self::Sphere(Frame::about(s.frame.origin, direction), s.radius, cap)
             }
             Surface::Torus(s) if !s.is_ring() => {
-                let around = Around::new(brep, face, Globe::Sheet(s), lines);
+                let around = Around::new(brep, face, SphericalMap::Sheet(s), lines);
                 let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
                 Self::Sheet(s, Frame::about(Point3::origin(), direction), cap)
             }
@@ -96,7 +97,7 @@ impl Chart {
                 let q = f.coordinates(p) / *radius;
                 (q.xy() / (1.0 - q.z)).into()
             }
-            Self::Sheet(s, f, _) => projected(f, &Globe::Sheet(*s).direction(p)),
+            Self::Sheet(s, f, _) => projected(f, &SphericalMap::Sheet(*s).direction(p)),
             Self::Torus(s, seams) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
                 let from = |i: usize, x: f64| turn(x - seams.at[i]);
@@ -123,7 +124,7 @@ impl Chart {
             Self::Sheet(s, f, _) => {
                 let part = 2.0 / (1.0 + x.coords.norm_squared());
                 let direction = f.point(x.x * part, x.y * part, 1.0 - part).coords;
-                Globe::Sheet(*s).point(&direction)
+                SphericalMap::Sheet(*s).point(&direction)
             }
             Self::Torus(s, seams) => {
                 let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
@@ -142,8 +143,8 @@ impl Chart {
     }
 
     /// The point of a torus that reaches its axis in a direction of the unit sphere.
-    pub fn globe_point(torus: &Torus, direction: &Vector3<f64>) -> Point3<f64> {
-        Globe::Sheet(*torus).point(direction)
+    pub fn spherical_point(torus: &Torus, direction: &Vector3<f64>) -> Point3<f64> {
+        SphericalMap::Sheet(*torus).point(direction)
     }
 
     /// The point of a side, between its ends, that is closest to the middle of a chart that has
@@ -188,13 +189,13 @@ fn projected(f: &Frame, direction: &Vector3<f64>) -> Point2<f64> {
 
 /// A surface that is projected by way of the unit sphere.
 #[derive(Clone, Copy)]
-enum Globe {
+enum SphericalMap {
     Sphere(Sphere),
     /// A torus that reaches its axis, with the poles mapped to the poles.
     Sheet(Torus),
 }
 
-impl Globe {
+impl SphericalMap {
     /// The point of the surface in a direction.
     fn point(&self, d: &Vector3<f64>) -> Point3<f64> {
         match self {
@@ -243,7 +244,7 @@ impl Globe {
 struct Around<'a> {
     brep: &'a Brep,
     face: FaceId,
-    globe: Globe,
+    map: SphericalMap,
     /// The chords of the face's edges.
     chords: Vec<[Point3<f64>; 2]>,
 }
@@ -257,7 +258,7 @@ struct SphereCentre {
 }
 
 impl<'a> Around<'a> {
-    fn new(brep: &'a Brep, face: FaceId, globe: Globe, lines: &Polylines) -> Self {
+    fn new(brep: &'a Brep, face: FaceId, map: SphericalMap, lines: &Polylines) -> Self {
         let chords = brep.topology.edges_of(face).flat_map(|edge| {
             let nodes = lines.nodes(edge).windows(2);
             nodes.map(|pair| [0, 1].map(|i: usize| lines.points[pair[i].point as usize]))
@@ -265,7 +266,7 @@ impl<'a> Around<'a> {
         Self {
             brep,
             face,
-            globe,
+            map,
             chords: chords.collect(),
         }
     }
@@ -277,12 +278,12 @@ impl<'a> Around<'a> {
             let cap = None;
             return SphereCentre { direction, cap };
         }
-        let mut flat = spread().filter(|d| self.globe.has_flat_cap(d));
+        let mut flat = spread().filter(|d| self.map.has_flat_cap(d));
         let z = self.farthest(&mut flat).unwrap_or_else(Vector3::z);
-        let radius = self.globe.radius();
+        let radius = self.map.radius();
         let clear = (self.away(&z) - accuracy.deviation) / (2.0 * radius);
         let mut flat = TAU / f64::from(steps_round(radius, &accuracy.part(0.5)));
-        if let Globe::Sheet(_) = self.globe {
+        if let SphericalMap::Sheet(_) = self.map {
             // A latitude is up to two angles about the tube.
             flat *= 0.5;
         }
@@ -299,7 +300,7 @@ impl<'a> Around<'a> {
         }
         let locator = FaceLocator::from_face(self.brep, self.face, resolution);
         let outside =
-            |d: &Vector3<f64>| locator.place(&self.globe.point(d)) == PointLocation::Outside;
+            |d: &Vector3<f64>| locator.place(&self.map.point(d)) == PointLocation::Outside;
         // Points close to the boundary, to its right, for faces that cover almost the whole sphere.
         let nearby = locator.arcs().iter().flat_map(|a| {
             let t = 0.5 * (a.range[0] + a.range[1]);
@@ -309,7 +310,7 @@ impl<'a> Around<'a> {
             let size = (a.curve.point(a.range[0]) - p).norm();
             (1..NEAREST).map(move |k| {
                 let nearby = p + right * (size / f64::from(1 << k));
-                self.globe.direction(&nearby)
+                self.map.direction(&nearby)
             })
         });
         self.farthest(&mut spread().filter(outside))
@@ -325,7 +326,7 @@ impl<'a> Around<'a> {
 
     /// The distance of the surface's point in a direction from the edges.
     fn away(&self, d: &Vector3<f64>) -> f64 {
-        let p = self.globe.point(d);
+        let p = self.map.point(d);
         let apart = self.chords.iter().map(|[a, b]| off_chord(&p, a, b));
         apart.fold(f64::INFINITY, f64::min)
     }

@@ -272,7 +272,7 @@ impl<'a> Builder<'a> {
         }
         if let (Chart::Sheet(torus, ..), Some([upper, lower])) =
             (self.fit.chart, self.fit.chart.poles())
-            && torus.poles().count() == 1
+            && torus.is_horn()
         {
             let middle = self.brep.curve(edge).point(0.5 * (nodes[0].t + nodes[1].t));
             let is_up = torus.frame.coordinates(&middle).z > 0.0;
@@ -398,7 +398,7 @@ impl<'a> Builder<'a> {
                 }
                 self.add_point(Point2::origin());
                 if let Some(cap) = cap {
-                    let centre = Chart::globe_point(torus, &frame.z);
+                    let centre = Chart::spherical_point(torus, &frame.z);
                     self.add_cap(centre, *cap);
                 }
             }

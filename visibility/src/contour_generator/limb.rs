@@ -186,7 +186,7 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
 
 /// The parameters at which a closed curve passes through the poles of a torus.
 fn pole_passes(s: &Torus, curve: &Curve, resolution: f64) -> Vec<f64> {
-    let f = |t: Interval| s.own_sheet(curve.jet_over(t));
+    let f = |t: Interval| s.sheet_level(curve.jet_over(t));
     let period = curve.period().unwrap_or(0.0);
     match isolate(&f, &curve.breaks(0.0, period), resolution) {
         Roots::Everywhere => Vec::new(),
@@ -373,7 +373,7 @@ fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
 
 /// The part of a range of a curve on a torus that ends off the poles, where there is no normal.
 fn off_poles(s: &Torus, curve: &Curve, [lo, hi]: [f64; 2], resolution: f64) -> [f64; 2] {
-    let near = OFF_POLE * s.pole_blur(resolution);
+    let near = OFF_POLE * s.pole_neighbourhood(resolution);
     let from_pole = |t: f64| {
         let p = curve.point(t);
         let away = s.poles().map(|pole| (pole - p).norm());

@@ -131,11 +131,11 @@ impl LimbTrimmer<'_, '_, '_, '_> {
     /// The junction where a limb ends in an apex, shared by all limbs that do.
     fn end_at_apex(&mut self, face: FaceId, p: &Point3<f64>, known: &mut Vec<ApexJunction>) -> u32 {
         let brep = self.scene.brep;
-        let blur = match brep.surface(face) {
-            Surface::Torus(torus) => torus.pole_blur(self.scene.resolution),
+        let unresolved = match brep.surface(face) {
+            Surface::Torus(torus) => torus.pole_neighbourhood(self.scene.resolution),
             _ => self.scene.resolution,
         };
-        let near = SPACE_TOLERANCE * blur;
+        let near = SPACE_TOLERANCE * unresolved;
         if let Some(apex) = known.iter().find(|a| (a.place - p).norm().is_within(near)) {
             return apex.junction;
         }
@@ -297,7 +297,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
         let [lo, hi] = range;
         let at = |part: f64| limb.curve.point(lo + (hi - lo) * part);
         if let Surface::Torus(torus) = self.scene.brep.surface(face)
-            && torus.own_sheet(<[f64; 3]>::from(at(0.5))).is_at_most(0.0)
+            && torus.sheet_level(<[f64; 3]>::from(at(0.5))).is_at_most(0.0)
         {
             return;
         }

@@ -187,7 +187,7 @@ impl Scene<'_> {
                     std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
                 surface.level(p)
             };
-            for [lo, hi] in self.beside_poles(s, q, w, [lo, hi], found) {
+            for [lo, hi] in self.parts_off_poles(s, q, w, [lo, hi], found) {
                 if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
                     found.push(0.5 * (lo + hi), true);
                 }
@@ -217,7 +217,7 @@ impl Scene<'_> {
         };
         for hit in both.as_slice() {
             let p: [f64; 3] = (q + w * hit.at).into();
-            if s.is_ring() || own.own_sheet(p).is_above_zero() {
+            if s.is_ring() || own.sheet_level(p).is_above_zero() {
                 found.push(hit.at, hit.touches);
             }
         }
@@ -225,7 +225,7 @@ impl Scene<'_> {
 
     /// The parts of a range of a line that are not close to a pole of a torus; at a pole the line
     /// touches the surface. The line is given in the torus's frame.
-    fn beside_poles(
+    fn parts_off_poles(
         &self,
         s: &Torus,
         q: &Vector3<f64>,

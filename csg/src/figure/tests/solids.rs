@@ -306,7 +306,7 @@ fn arcs_may_reach_the_axis() {
 
 #[test]
 fn arcs_are_clipped_at_the_axis() {
-    // A disc about a point beside the axis: the kept part is an apple's.
+    // A disc about a point off the axis: what is kept is the figure of an apple.
     let map = PlaneMap {
         offset: [n(3), n(0)],
         ..PlaneMap::identity()

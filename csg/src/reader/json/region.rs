@@ -11,7 +11,7 @@ use super::contours::contours;
 use super::value::{Content, Document, Member, ValueId};
 use super::{Fields, Length, check_bits, choice, lengths, number, numbers};
 use crate::figure::{Figure, FigureOperation, OffsetJoin};
-use crate::primitive::{Dimension, PrimitiveError};
+use crate::primitive::Dimension;
 use crate::transform::{Transform, TransformStep};
 
 /// An operation on figures.
@@ -190,11 +190,11 @@ fn offset(fields: &Fields<'_>) -> Result<Combination, SpannedError> {
 
 fn primitive(fields: &Fields<'_>, name: &Member) -> Result<Option<Region>, SpannedError> {
     let kind = choice(fields.document.value(name.value), &PRIMITIVES)?;
-    let positive = |length: Length, dimension: Dimension| match length.value > Rational::ZERO {
-        true => Ok(length.value),
-        false => {
-            let error = PrimitiveError::NotPositive(dimension);
-            Err(bad_length(error, Some(&length.value), length.span))
+    let positive = |length: Length, dimension: Dimension| {
+        let checked = dimension.check_positive(&length.value);
+        match checked {
+            Ok(()) => Ok(length.value),
+            Err(error) => Err(bad_length(error, Some(&length.value), length.span)),
         }
     };
     let figure = match kind {

@@ -292,22 +292,22 @@ struct OnSheet<'a, N: Float = f64> {
 
 impl<N: Float> Function<N> for OnSheet<'_, N> {
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
-        self.torus.own_sheet(self.curve.jet_over(t))
+        self.torus.sheet_level(self.curve.jet_over(t))
     }
 
     fn reach(&self, t: Interval<N>) -> Interval<N> {
         match self.curve.box_over(t) {
-            Some(p) => self.torus.own_sheet(p),
+            Some(p) => self.torus.sheet_level(p),
             None => Interval::ENTIRE,
         }
     }
 
     fn at(&self, t: N) -> Jet<N> {
-        self.torus.own_sheet(self.curve.jet(t))
+        self.torus.sheet_level(self.curve.jet(t))
     }
 
     fn value(&self, t: N) -> N {
-        self.torus.own_sheet(self.curve.point(t).into())
+        self.torus.sheet_level(self.curve.point(t).into())
     }
 }
 

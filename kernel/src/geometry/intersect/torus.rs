@@ -109,7 +109,7 @@ fn traced<N: Float>(
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
         let p = own.point(*theta, *phi);
-        if t.own_sheet([p.x, p.y, p.z]) < -predicates.resolution::<N>() {
+        if t.sheet_level([p.x, p.y, p.z]) < -predicates.resolution::<N>() {
             continue;
         }
         predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
@@ -153,7 +153,7 @@ fn traced<N: Float>(
     }
     for s in singular {
         let point = own.point(s.angles[0], s.angles[1]);
-        let lies_on = |s: &Surface<N>| !has_twin(s) || predicates.within(s.distance(&point));
+        let lies_on = |s: &Surface<N>| !has_other_sheet(s) || predicates.within(s.distance(&point));
         if !lies_on(&own) || !lies_on(other) {
             continue;
         }
@@ -182,7 +182,7 @@ fn traced<N: Float>(
 }
 
 /// Whether the surface is one of two on which its implicit polynomial vanishes.
-fn has_twin<N: Float>(surface: &Surface<N>) -> bool {
+fn has_other_sheet<N: Float>(surface: &Surface<N>) -> bool {
     match surface {
         Surface::Cone(_) => true,
         Surface::Torus(torus) => !torus.is_ring(),

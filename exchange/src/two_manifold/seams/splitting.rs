@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 impl Cut {
     /// Splits a seam from pole to pole in the middle. Where both poles are one point, readers cannot
     /// distinguish a full turn from an edge of length zero.
-    pub(super) fn part_between_poles(&mut self) {
+    pub(super) fn split_between_poles(&mut self) {
         let is_whole = |seam: &Seam| seam.ends.iter().all(|end| matches!(end, End::Pole(_)));
         let Some(at) = self.seams.iter().position(is_whole) else {
             return;
@@ -27,7 +27,7 @@ impl Cut {
     }
 
     /// Splits the pieces of both seams where they cross.
-    pub(super) fn part_at_crossing(&mut self) {
+    pub(super) fn split_at_crossing(&mut self) {
         let v = self.window.starts[1];
         // Along one seam the other angle is the curve's parameter.
         let at = [v, 0.0];

@@ -181,7 +181,7 @@ pub(super) fn boundary<N: Float>(
             edges.push(ClassifiedEdge { piece, face_uses });
         }
     }
-    let joined = join(edges, arrangement);
+    let joined = join(edges, arrangement, predicates);
     let whole = classifier.whole_surfaces(&joined)?;
     let raw = |e: JoinedEdge<N>| EdgeInput {
         curve: e.piece.meeting,

@@ -4,8 +4,10 @@ use super::arrangement::Arrangement;
 use super::edge_candidates::EdgeCandidate;
 use premio_kernel::brep::boundary_input::FaceUse;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::surface::Surface;
+use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::Compare;
+use premio_kernel::number::predicates::{Compare, Predicates};
 use std::collections::HashMap;
 
 /// A candidate that is an edge, with the faces around it.
@@ -29,8 +31,9 @@ pub(super) struct JoinedEdge<N: Float = f64> {
 pub(super) fn join<N: Float>(
     edges: Vec<ClassifiedEdge<N>>,
     arrangement: &Arrangement<N>,
+    predicates: &Predicates,
 ) -> Vec<JoinedEdge<N>> {
-    let next = successors(&edges, arrangement);
+    let next = successors(&edges, arrangement, predicates);
     let mut has_previous = vec![false; edges.len()];
     for &j in next.iter().flatten() {
         has_previous[j] = true;
@@ -52,6 +55,7 @@ pub(super) fn join<N: Float>(
 fn successors<N: Float>(
     edges: &[ClassifiedEdge<N>],
     arrangement: &Arrangement<N>,
+    predicates: &Predicates,
 ) -> Vec<Option<usize>> {
     let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, edge) in edges.iter().enumerate() {
@@ -64,9 +68,30 @@ fn successors<N: Float>(
         let [a, b] = at[&end][..] else { return None };
         let j = if a == i { b } else { a };
         let curve = &arrangement.meetings[edge.piece.meeting].curve;
-        edge.is_followed_by(&edges[j], curve).then_some(j)
+        let is_joined = edge.is_followed_by(&edges[j], curve)
+            && !is_pole(end, edge.piece.meeting, arrangement, predicates);
+        is_joined.then_some(j)
     });
     next.collect()
+}
+
+/// Whether a corner is a pole of a torus on which a curve lies. The curve is smooth in the torus's
+/// angles there, and may turn back in space.
+fn is_pole<N: Float>(
+    corner: usize,
+    meeting: usize,
+    arrangement: &Arrangement<N>,
+    predicates: &Predicates,
+) -> bool {
+    let p = arrangement.corners[corner].point;
+    let carriers = arrangement.meetings[meeting].carriers.iter();
+    let mut surfaces = carriers.map(|&c| &arrangement.carriers[c]);
+    surfaces.any(|surface| match surface {
+        Surface::Torus(torus) => torus
+            .poles()
+            .any(|pole| predicates.within((pole - p).length())),
+        _ => false,
+    })
 }
 
 impl<N: Float> ClassifiedEdge<N> {

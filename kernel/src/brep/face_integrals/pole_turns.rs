@@ -7,6 +7,7 @@ use crate::brep::Brep;
 use crate::brep::topology::{CoedgeId, Sense};
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::{Surface, Torus};
+use crate::geometry::torus_curve::wrap;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -25,9 +26,15 @@ pub(super) struct PoleTurn<N: Float> {
 /// The distance of a vertex from a pole, relative to the torus, below which it is the pole.
 const AT_POLE: f64 = 1.0 / (1 << 30) as f64;
 
-/// The sine of the angle between an edge and the axis below which its direction does not give the
-/// angle about the axis, and the fraction of the edge from its end at which its point gives it.
-const UPRIGHT: f64 = 1.0 / (1 << 10) as f64;
+/// The fraction of an edge from its end at which a point stands for the edge's direction.
+const NEXT_TO_END: f64 = 1.0 / (1 << 10) as f64;
+
+/// The difference of the angles about the axis of an edge's tangent and of the point next to its end
+/// above which the tangent is not known: the edge runs along the axis there, or turns back.
+const TANGENT_OFF: f64 = 1.0 / 16.0;
+
+/// The error of a sector between known tangents.
+const SAME_ANGLE: f64 = 1.0 / (1 << 20) as f64;
 
 /// The fraction of an edge from its end at which it shows which pole it approaches.
 const NEAR_POLE: f64 = 1.0 / 8.0;
@@ -55,18 +62,21 @@ pub(super) fn pole_turns<N: Float>(
             CoedgeEnd::first(brep, leaving),
         ];
         // Both poles of a horn torus are one point.
-        let is_upper = arrival.inside(torus, NEAR_POLE).z.is_above_zero();
-        let [from, to] = [arrival, departure].map(|end| end.angle(torus));
+        let shown = match torus.is_horn() {
+            true => arrival.inside(torus, NEAR_POLE),
+            false => torus.frame.coordinates(&brep.point(vertex)),
+        };
+        let is_upper = shown.z.is_above_zero();
         // Seen from outside, the face is to the left: it lies behind a turn at the upper pole, and
         // ahead of one at the lower pole.
         let is_backward = is_upper == (side == Sense::Along);
         let edge = |c: CoedgeId| brep.topology.coedge(c).edge;
         let is_slit = arriving != leaving && edge(arriving) == edge(leaving);
-        let sector = match is_backward {
-            _ if is_slit => N::TAU,
-            true => (from - to).rem_euclid(N::TAU),
-            false => (to - from).rem_euclid(N::TAU),
+        let sector = match is_slit {
+            true => N::TAU,
+            false => sector([&arrival, &departure], torus, is_backward),
         };
+        let from = arrival.direction(torus).angle;
         let pole = torus.pole_angle();
         Some(PoleTurn {
             v: if is_upper { pole } else { -pole },
@@ -77,10 +87,41 @@ pub(super) fn pole_turns<N: Float>(
     turns.collect()
 }
 
+/// The angle that a face covers at a pole between the edge that arrives and the one that leaves. At a
+/// cusp it is nothing or a whole turn, as the points next to the pole show.
+fn sector<N: Float>(ends: [&CoedgeEnd<'_, N>; 2], torus: &Torus<N>, is_backward: bool) -> N {
+    let between = |[from, to]: [N; 2]| match is_backward {
+        true => (from - to).rem_euclid(N::TAU),
+        false => (to - from).rem_euclid(N::TAU),
+    };
+    let directions = ends.map(|end| end.direction(torus));
+    let sector = between(directions.map(|direction| direction.angle));
+    let error = match directions.iter().all(|direction| direction.is_tangent) {
+        true => SAME_ANGLE,
+        false => TANGENT_OFF,
+    };
+    let is_cusp = sector.min(N::TAU - sector).is_short_of(N::from_f64(error));
+    if !is_cusp {
+        return sector;
+    }
+    match between(ends.map(|end| end.angle_inside(torus))).is_beyond(N::PI) {
+        true => N::TAU,
+        false => N::ZERO,
+    }
+}
+
 fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
     let near = torus.minor * N::from_f64(AT_POLE);
     let mut poles = torus.poles();
     poles.any(|pole| (pole - p).length().is_within(near))
+}
+
+/// The angle about the axis of the direction of a coedge at a pole.
+#[derive(Clone, Copy)]
+struct EndDirection<N: Float> {
+    angle: N,
+    /// Whether it is that of the tangent, and not of a point next to the end.
+    is_tangent: bool,
 }
 
 /// An end of a coedge.
@@ -115,17 +156,23 @@ impl<'a, N: Float> CoedgeEnd<'a, N> {
         torus.frame.coordinates(&self.curve.point(t))
     }
 
-    /// The angle about the axis at which the coedge arrives at a pole, or leaves it.
-    fn angle(&self, torus: &Torus<N>) -> N {
+    /// The direction in which the coedge arrives at a pole, or leaves it.
+    fn direction(&self, torus: &Torus<N>) -> EndDirection<N> {
         let into = (self.other - self.at).signum();
-        let leaving = torus
-            .frame
-            .components(&(self.curve.tangent(self.at) * into));
-        let is_slanted = leaving.xy().length().is_beyond(N::from_f64(UPRIGHT));
-        let direction = match is_slanted {
-            true => leaving,
-            false => self.inside(torus, UPRIGHT),
-        };
-        direction.y.atan2(direction.x)
+        let tangent = self.curve.tangent(self.at) * into;
+        let leaving = torus.frame.components(&tangent);
+        let (angle, inside) = (leaving.y.atan2(leaving.x), self.angle_inside(torus));
+        let off = wrap(angle - inside).abs();
+        let is_tangent = off.is_short_of(N::from_f64(TANGENT_OFF));
+        EndDirection {
+            angle: if is_tangent { angle } else { inside },
+            is_tangent,
+        }
+    }
+
+    /// The angle about the axis of a point next to the end.
+    fn angle_inside(&self, torus: &Torus<N>) -> N {
+        let q = self.inside(torus, NEXT_TO_END);
+        q.y.atan2(q.x)
     }
 }

@@ -1,8 +1,9 @@
-//! All fifteen pairs of surfaces: every branch lies on both, and none is missing.
+//! All pairs of surfaces: every branch lies on both, and none is missing.
 
 use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, coincidence, intersect};
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
@@ -57,6 +58,8 @@ impl Random {
     fn surface(&mut self, kind: u64, grid: bool) -> Surface {
         let frame = self.frame(grid);
         let mut r = |lo, hi| self.length(grid, lo, hi);
+        // Two radii that differ.
+        let two = |a: f64, b: f64| [a, if a == b { a + 0.75 } else { b }];
         match kind {
             0 => Surface::Plane(Plane { frame }),
             1 => Surface::Cylinder(Cylinder {
@@ -76,7 +79,7 @@ impl Random {
                 frame,
                 radius: r(0.5, 2.5),
             }),
-            _ => {
+            4 => {
                 let minor = r(0.5, 1.0);
                 Surface::Torus(Torus {
                     frame,
@@ -84,9 +87,20 @@ impl Random {
                     minor,
                 })
             }
+            5 => Surface::EllipticCylinder(EllipticCylinder {
+                frame,
+                radii: two(r(0.5, 2.0), r(0.5, 2.0)),
+            }),
+            _ => Surface::EllipticCone(EllipticCone {
+                frame,
+                slopes: two(r(0.5, 2.0), r(0.5, 2.0)),
+            }),
         }
     }
 }
+
+/// The number of kinds of surfaces.
+const KINDS: u64 = 7;
 
 /// Points at which `b` changes sign along parameter lines of `a`.
 fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
@@ -97,8 +111,10 @@ fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
             let (i, j) = if k % 2 == 0 { (fixed, s) } else { (s, fixed) };
             match a {
                 Surface::Plane(_) => a.point(8.0 * i - 4.0, 8.0 * j - 4.0),
-                Surface::Cylinder(_) => a.point(6.3 * i, 8.0 * j - 4.0),
-                Surface::Cone(_) => a.point(6.3 * i, 4.0 * j),
+                Surface::Cylinder(_) | Surface::EllipticCylinder(_) => {
+                    a.point(6.3 * i, 8.0 * j - 4.0)
+                }
+                Surface::Cone(_) | Surface::EllipticCone(_) => a.point(6.3 * i, 4.0 * j),
                 Surface::Sphere(_) => a.point(6.3 * i, 3.1 * j - 1.55),
                 Surface::Torus(_) => a.point(6.3 * i, 6.3 * j),
             }
@@ -134,7 +150,7 @@ fn check(seed: u64, grid: bool) {
     for _ in 0..5 {
         rng.next();
     }
-    let (i, j) = (rng.below(5), rng.below(5));
+    let (i, j) = (rng.below(KINDS), rng.below(KINDS));
     let (a, b) = (rng.surface(i, grid), rng.surface(j, grid));
     let extent = RegionOfInterest {
         centre: Point3::origin(),
@@ -206,14 +222,14 @@ fn check(seed: u64, grid: bool) {
 
 #[test]
 fn random_pairs_meet_in_all_their_curves() {
-    for seed in 0..3000 {
+    for seed in 0..4000 {
         check(seed, false);
     }
 }
 
 #[test]
 fn pairs_on_a_grid_meet_in_all_their_curves() {
-    for seed in 0..6000 {
+    for seed in 0..8000 {
         check(seed, true);
     }
 }

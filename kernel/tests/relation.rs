@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
@@ -35,6 +36,7 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
         direction: normal.clone(),
         size: exact(0.0),
         tube: exact(0.0),
+        axes: None,
     };
     for (beyond, side) in [
         (tiny(80), Side::Outside),
@@ -47,6 +49,7 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
             direction: [0.0, 0.0, 1.0].map(exact),
             size: radius.clone(),
             tube: exact(0.0),
+            axes: None,
         };
         let [p, s] = [&plane, &sphere].map(rounded);
         let p = Surface::Plane(Plane { frame: p });
@@ -98,11 +101,22 @@ fn surface(kind: usize, c: &Coefficients<Rational>) -> Surface {
             frame,
             radius: size,
         }),
-        _ => Surface::Torus(Torus {
+        4 => Surface::Torus(Torus {
             frame,
             major: size,
             minor: tube,
         }),
+        _ => {
+            let axes = c.axes.as_ref().expect("an elliptic surface has axes");
+            let axes = axes
+                .each_ref()
+                .map(|axis| axis.each_ref().map(to_f64).into());
+            let o = frame.origin;
+            match kind {
+                5 => Surface::EllipticCylinder(EllipticCylinder::with_axes(o, axes)),
+                _ => Surface::EllipticCone(EllipticCone::with_axes(o, axes)),
+            }
+        }
     }
 }
 
@@ -120,8 +134,36 @@ fn numbers() -> impl Strategy<Value = Coefficients<Rational>> {
             direction: direction.map(third),
             size: third(size),
             tube: third(tube),
+            axes: None,
         }
     })
+}
+
+/// The numbers with conjugate axes in place of the size, of which the third is the direction.
+fn with_axes(c: &Coefficients<Rational>, shear: [Rational; 2]) -> Coefficients<Rational> {
+    let [x, y, z] = c.direction.clone();
+    let zero = Rational::ZERO;
+    // Perpendicular to the direction, unless it is along z.
+    let across = match (x.is_zero(), y.is_zero()) {
+        (true, true) => [Rational::ONE, zero.clone(), zero],
+        _ => [-y.clone(), x.clone(), zero],
+    };
+    let [a, b, d] = &across;
+    let third = [&y * d - &z * b, &z * a - &x * d, &x * b - &y * a];
+    let sheared = |v: &[Rational; 3], by: &Rational| {
+        [0, 1, 2].map(|i| &v[i] * &c.size + &c.direction[i] * by)
+    };
+    let axes = [
+        sheared(&across, &shear[0]),
+        sheared(&third, &shear[1]),
+        c.direction.clone(),
+    ];
+    Coefficients {
+        size: Rational::ONE,
+        tube: Rational::ZERO,
+        axes: Some(Box::new(axes)),
+        ..c.clone()
+    }
 }
 
 const OF_TWO: &[PairMeasure] = &[
@@ -159,10 +201,26 @@ const OF_TORUS: &[PairMeasure] = &[
 proptest! {
     #[test]
     fn ranges_hold_what_more_bits_give(
-        a in numbers(), b in numbers(), kinds in (1usize..5, 1usize..5),
+        a in numbers(), b in numbers(), kinds in (1usize..7, 1usize..7),
+        shear in prop::array::uniform2(-3i32..3),
         relation in prop_oneof![prop::sample::select(OF_TWO), prop::sample::select(OF_TORUS)],
     ) {
         let first = if OF_TORUS.contains(&relation) { 4 } else { kinds.0 };
+        // The direction of a sheared cone is not its axis.
+        let of_cone = [
+            PairMeasure::Between,
+            PairMeasure::PlaneOnRuling,
+            PairMeasure::PointOnQuadric,
+        ];
+        let is_cone = first == 6 || kinds.1 == 6;
+        prop_assume!(!is_cone || of_cone.contains(&relation));
+        prop_assume!(kinds.1 != 5 || relation != PairMeasure::PlaneOnRuling);
+        let shear = shear.map(|k| Rational::from_parts(k.into(), 3u8.into()));
+        let prepared = |kind: usize, c: &Coefficients<Rational>| match kind > 4 {
+            true => with_axes(c, shear.clone()),
+            false => c.clone(),
+        };
+        let (a, b) = (prepared(first, &a), prepared(kinds.1, &b));
         let surfaces = [surface(first, &a), surface(kinds.1, &b)];
         let (of_a, of_b) = (|| a.clone(), || b.clone());
         let pair = SurfacePair::new(

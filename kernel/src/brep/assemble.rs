@@ -279,8 +279,10 @@ impl<'a, N: Float> Assembler<'a, N> {
         let s = &self.raw.surfaces[corner.side.surface];
         let normal = match (s, corner.pole) {
             // At an apex the directions are sorted around the axis.
-            (Surface::Cone(c), _) if self.predicates.within((v - c.frame.origin).length()) => {
-                -c.frame.z
+            (Surface::Cone(_) | Surface::EllipticCone(_), _)
+                if self.predicates.within((v - s.frame().origin).length()) =>
+            {
+                -s.frame().z
             }
             (_, Some(pole)) => s.frame().z * pole.sign::<N>(),
             _ => s.normal(v),

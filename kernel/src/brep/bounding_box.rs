@@ -59,7 +59,11 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
                     points.push(f.origin + out * (k * t.major) + axis * (l * t.minor));
                 }
             }
-            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {}
+            Surface::Plane(_)
+            | Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => {}
         }
     }
     if let Surface::Torus(t) = surface {
@@ -78,7 +82,7 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
     // A resolution of zero would miss boundaries by rounding. An apex may be far from the face.
     let arcs = FaceLocator::from_face(brep, face, N::ZERO);
     let around = match surface {
-        Surface::Cone(_) => Aabb::EMPTY,
+        Surface::Cone(_) | Surface::EllipticCone(_) => Aabb::EMPTY,
         _ => points
             .iter()
             .fold(Aabb::EMPTY, |b, p| b.hull(&Aabb::new(p))),

@@ -386,7 +386,11 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
         _ if !brep.topology.face(face).loops.is_empty() => return b,
         Surface::Sphere(s) => s.radius,
         Surface::Torus(t) => t.circumradius(),
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => return b,
+        Surface::Plane(_)
+        | Surface::Cylinder(_)
+        | Surface::Cone(_)
+        | Surface::EllipticCylinder(_)
+        | Surface::EllipticCone(_) => return b,
     };
     Aabb::new(&surface.frame().origin).grown(radius)
 }

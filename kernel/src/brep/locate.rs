@@ -176,7 +176,10 @@ impl<'a, N: Float> FaceLocator<'a, N> {
                 let direction = s.frame.x * cos + s.frame.y * sin;
                 self.reach(&SurfacePath::straight(s, p, direction))
             }
-            Surface::Cylinder(_) | Surface::Cone(_) => self.ruled(p, k, turn),
+            Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => self.ruled(p, k, turn),
             Surface::Sphere(s) => self.spherical(s, p, k, turn),
             Surface::Torus(s) if s.is_ring() => self.toric(s, p, k, turn),
             Surface::Torus(s) => self.on_sheet(s, p, k, turn),

@@ -316,7 +316,10 @@ impl<N: Float> Sorter<'_, N> {
                 let walk = SurfacePath::straight(plane, point, d).toward(point, left);
                 self.follow(ring, *arc, point, left, &[walk], None)
             }
-            Surface::Cylinder(_) | Surface::Cone(_) => false,
+            Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => false,
         }
     }
 
@@ -514,7 +517,10 @@ impl<N: Float> Sorter<'_, N> {
 /// Whether paths down the rulings or the meridians of a surface connect its loops.
 fn leads_down<N: Float>(surface: &Surface<N>) -> bool {
     match surface {
-        Surface::Cylinder(_) | Surface::Cone(_) => true,
+        Surface::Cylinder(_)
+        | Surface::Cone(_)
+        | Surface::EllipticCylinder(_)
+        | Surface::EllipticCone(_) => true,
         Surface::Torus(torus) => !torus.is_ring(),
         Surface::Plane(_) | Surface::Sphere(_) => false,
     }

@@ -1,6 +1,7 @@
 //! Paths on a surface along plane sections of it, and their crossings with arcs.
 //!
-//! A path is a straight line of a plane, a ruling or a parallel of a cylinder or a cone, a great
+//! A path is a straight line of a plane, a ruling or a parallel of a cylinder or a cone (of an elliptic
+//! one an ellipse), a great
 //! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
 //! crossings with an arc are the roots of that plane's distance along the arc. At the top of a
 //! torus the plane is tangent, and the cylinder through the path is used. Notation: s is the length
@@ -16,6 +17,7 @@ use crate::geometry::curve::{Circle, Curve, Line};
 use crate::geometry::curve_plane::{
     SectionPlane, line_intersections, section_roots, surface_roots,
 };
+use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::torus_parameter::TorusParameter;
@@ -92,6 +94,9 @@ enum Track<N: Float = f64> {
     Line(Vector3<N>),
     /// The circle about the frame's z axis, starting at its x axis, with the radius.
     Circle(Frame<N>, N),
+    /// An ellipse with the radii along x and y, starting at the eccentric angle. In place of its
+    /// length, the angle times the greater radius is used.
+    Ellipse(Frame<N>, [N; 2], N),
 }
 
 /// The part of the plane section that is the path.
@@ -196,7 +201,31 @@ impl<N: Float> SurfacePath<N> {
         };
         let centre = f.origin + f.z * q.z;
         let is_off_axis = rho.is_beyond(resolution.max(N::ROUNDING * q.length()));
+        let radii = match surface {
+            Surface::EllipticCylinder(s) => Some(s.radii),
+            Surface::EllipticCone(s) => Some(s.slopes.map(|slope| slope * q.z)),
+            _ => None,
+        };
+        if let Some(radii) = radii {
+            return is_off_axis.then(|| Self::ellipse(start, f.at(centre), radii, sense));
+        }
         is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
+    }
+
+    /// The ellipse through `start` about the centre of a frame, once round.
+    fn ellipse(start: &Point3<N>, frame: Frame<N>, [a, b]: [N; 2], sense: Sense) -> Self {
+        let frame = match sense {
+            Sense::Along => frame,
+            Sense::Against => Frame {
+                y: -frame.y,
+                z: -frame.z,
+                ..frame
+            },
+        };
+        let q = frame.coordinates(start);
+        let track = Track::Ellipse(frame, [a, b], eccentric_angle([q.x, q.y], [a, b]));
+        let length = N::TAU * a.max(b);
+        Self::new(start, frame.z, track, Branch::Whole, length)
     }
 
     /// The endless ruling of a cylinder or a cone through `start`, or at the angle `u` from a
@@ -204,7 +233,14 @@ impl<N: Float> SurfacePath<N> {
     pub fn ruling(surface: &Surface<N>, start: &Point3<N>, u: N, sense: Sense) -> Option<Self> {
         let f = surface.frame();
         let (sin, cos) = u.sin_cos();
-        Self::ruling_over(surface, start, f.x * cos + f.y * sin, sense)
+        let across = match surface {
+            Surface::EllipticCylinder(EllipticCylinder { radii: [a, b], .. })
+            | Surface::EllipticCone(EllipticCone { slopes: [a, b], .. }) => {
+                f.x * (*a * cos) + f.y * (*b * sin)
+            }
+            _ => f.x * cos + f.y * sin,
+        };
+        Self::ruling_over(surface, start, across, sense)
     }
 
     /// The ruling of a cylinder or a cone through a point of it; for a point on the axis, the one
@@ -224,17 +260,29 @@ impl<N: Float> SurfacePath<N> {
         Self::ruling_over(surface, start, radial, sense)
     }
 
-    /// The ruling in the direction of a unit vector perpendicular to the axis.
+    /// The ruling in the direction of a vector perpendicular to the axis: a unit vector, but for an
+    /// elliptic surface.
     fn ruling_over(
         surface: &Surface<N>,
         start: &Point3<N>,
-        radial: Vector3<N>,
+        across: Vector3<N>,
         sense: Sense,
     ) -> Option<Self> {
         let f = surface.frame();
+        let radial = match surface.is_elliptic() {
+            true => across.unit(),
+            false => across,
+        };
         let direction = match surface {
-            Surface::Cylinder(_) => f.z * sense.sign::<N>(),
+            Surface::Cylinder(_) | Surface::EllipticCylinder(_) => f.z * sense.sign::<N>(),
             Surface::Cone(c) => f.z * c.cos + radial * c.sin,
+            Surface::EllipticCone(c) => {
+                let [a, b] = c.slopes;
+                let (x, y) = (f.x.dot(&radial), f.y.dot(&radial));
+                // The cross section at the height 1 has this distance from the axis there.
+                let reach = N::ONE / (x / a).hypot(y / b);
+                (f.z + radial * reach).unit()
+            }
             _ => return None,
         };
         let branch = Branch::Half(f.origin, radial);
@@ -292,6 +340,14 @@ impl<N: Float> SurfacePath<N> {
         let track = match self.track {
             Track::Line(d) => Track::Line(-d),
             Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
+            Track::Ellipse(f, radii, start) => {
+                let turned = Frame {
+                    y: -f.y,
+                    z: -f.z,
+                    ..f
+                };
+                Track::Ellipse(turned, radii, -start)
+            }
         };
         Self::new(&self.start, self.normal, track, self.branch, self.length)
     }
@@ -309,7 +365,11 @@ impl<N: Float> SurfacePath<N> {
 
     /// Whether the path ends where it starts.
     pub(super) fn closes(&self) -> bool {
-        matches!(self.track, Track::Circle(_, radius) if self.length.reaches(N::TAU * radius))
+        match self.track {
+            Track::Line(_) => false,
+            Track::Circle(_, radius) => self.length.reaches(N::TAU * radius),
+            Track::Ellipse(_, [a, b], _) => self.length.reaches(N::TAU * a.max(b)),
+        }
     }
 
     /// The point at the length s.
@@ -319,6 +379,10 @@ impl<N: Float> SurfacePath<N> {
             Track::Circle(ref f, r) => {
                 let (sin, cos) = (s / r).sin_cos();
                 f.point(r * cos, r * sin, N::ZERO)
+            }
+            Track::Ellipse(ref f, [a, b], start) => {
+                let (sin, cos) = (start + s / a.max(b)).sin_cos();
+                f.point(a * cos, b * sin, N::ZERO)
             }
         }
     }
@@ -331,6 +395,11 @@ impl<N: Float> SurfacePath<N> {
                 let q = f.coordinates(p);
                 q.y.atan2(q.x).rem_euclid(N::TAU) * r
             }
+            Track::Ellipse(ref f, [a, b], start) => {
+                let q = f.coordinates(p);
+                let turned = eccentric_angle([q.x, q.y], [a, b]) - start;
+                turned.rem_euclid(N::TAU) * a.max(b)
+            }
         }
     }
 
@@ -339,6 +408,10 @@ impl<N: Float> SurfacePath<N> {
         match self.track {
             Track::Line(d) => d,
             Track::Circle(ref f, _) => f.z.cross(&(p - f.origin)).unit(),
+            Track::Ellipse(ref f, [a, b], _) => {
+                let q = f.coordinates(p);
+                (f.y * (q.x * b / a) - f.x * (q.y * a / b)).unit()
+            }
         }
     }
 

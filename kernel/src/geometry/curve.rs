@@ -1,7 +1,7 @@
 //! Curves in space, each with its parameter.
 
 use super::frame::Frame;
-use super::quadric_curve::{QuadricCurve, Ruled};
+use super::quadric_curve::QuadricCurve;
 use super::surface::{Surface, turn};
 use super::torus_curve::TorusCurve;
 use crate::geometry::vector::{Length, direction};
@@ -350,12 +350,7 @@ impl<N: Float> Curve<N> {
     }
 
     fn quartic_parameter(&self, q: &QuadricCurve<N>, p: &Point3<N>) -> N {
-        let frame = match &q.base {
-            Ruled::Cylinder(s) => s.frame,
-            Ruled::Cone(s) => s.frame,
-        };
-        let local = frame.coordinates(p);
-        let u = turn(local.y.atan2(local.x));
+        let u = turn(q.base.angle(p));
         let mut candidates = q.parameters_of(u);
         // A cone's apex has no definite angle.
         candidates.extend(q.apex_parameters());

@@ -89,20 +89,13 @@ pub(crate) fn surface_roots<N: Float>(
     }
 }
 
-fn base_frame<N: Float>(curve: &QuadricCurve<N>) -> &Frame<N> {
-    match &curve.base {
-        Ruled::Cylinder(s) => &s.frame,
-        Ruled::Cone(s) => &s.frame,
-    }
-}
-
 /// Whether a plane contains the axis of the surface whose rulings carry a curve.
 fn through_axis<N: Float>(
     curve: &QuadricCurve<N>,
     section: SectionPlane<'_, N>,
     resolution: N,
 ) -> bool {
-    let axis = base_frame(curve);
+    let axis = curve.base.frame();
     let away = (axis.origin - section.point).dot(section.normal).abs();
     section.normal.dot(&axis.z).abs() <= N::ROUNDING && away <= resolution
 }
@@ -116,8 +109,15 @@ fn ruling_roots<N: Float>(
     resolution: N,
     found: &mut impl FnMut(N, bool),
 ) {
-    let axis = base_frame(curve);
-    let u = (-n.dot(&axis.x)).atan2(n.dot(&axis.y));
+    let axis = curve.base.frame();
+    let [a, b] = curve.base.radii();
+    let [x, y] = match curve.base {
+        Ruled::Cylinder(_) | Ruled::Cone(_) => [n.dot(&axis.x), n.dot(&axis.y)],
+        Ruled::EllipticCylinder(_) | Ruled::EllipticCone(_) => {
+            [a * n.dot(&axis.x), b * n.dot(&axis.y)]
+        }
+    };
+    let u = (-x).atan2(y);
     let period = curve.period();
     let mut within = |t: N, simple: bool| {
         let t = period.map_or(t, |period| lo + (t - lo).rem_euclid(period));

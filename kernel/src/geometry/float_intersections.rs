@@ -2,6 +2,7 @@
 
 use super::bivariate_trig_poly::BivariateTrigPoly;
 use super::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
+use super::elliptic_surface::{EllipticCone, EllipticCylinder};
 use super::frame::Frame;
 use super::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
 use super::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
@@ -49,6 +50,24 @@ impl<N: Float> Torus<N> {
     }
 }
 
+impl<N: Float> EllipticCylinder<N> {
+    fn to_f64(self) -> EllipticCylinder {
+        EllipticCylinder {
+            frame: self.frame.to_f64(),
+            radii: self.radii.map(N::rounded),
+        }
+    }
+}
+
+impl<N: Float> EllipticCone<N> {
+    fn to_f64(self) -> EllipticCone {
+        EllipticCone {
+            frame: self.frame.to_f64(),
+            slopes: self.slopes.map(N::rounded),
+        }
+    }
+}
+
 impl<N: Float> Surface<N> {
     /// The surface rounded to f64.
     pub fn to_f64(&self) -> Surface {
@@ -63,6 +82,8 @@ impl<N: Float> Surface<N> {
                 radius: s.radius.rounded(),
             }),
             Self::Torus(s) => Surface::Torus(s.to_f64()),
+            Self::EllipticCylinder(s) => Surface::EllipticCylinder(s.to_f64()),
+            Self::EllipticCone(s) => Surface::EllipticCone(s.to_f64()),
         }
     }
 }
@@ -122,6 +143,8 @@ impl<N: Float> QuadricCurve<N> {
         let base = match &self.base {
             Ruled::Cylinder(s) => Ruled::Cylinder(s.to_f64()),
             Ruled::Cone(s) => Ruled::Cone(s.to_f64()),
+            Ruled::EllipticCylinder(s) => Ruled::EllipticCylinder(s.to_f64()),
+            Ruled::EllipticCone(s) => Ruled::EllipticCone(s.to_f64()),
         };
         let sweep = match self.sweep {
             Sweep::Round { turns } => Sweep::Round { turns },

@@ -102,6 +102,8 @@ impl<N: Float> ImplicitOnCurve<N> {
                 let sum = square([a, b, c]);
                 std::array::from_fn(|n| sum[n] - far * across[n])
             }
+            Surface::EllipticCylinder(s) => weighted([x, y, z], s.equation()),
+            Surface::EllipticCone(s) => weighted([x, y, z], s.equation()),
         };
         Self::Line {
             powers,
@@ -127,6 +129,16 @@ impl<N: Float> ImplicitOnCurve<N> {
         let value = value + Interval::around(N::ZERO, slop);
         value.over(conjugate(surface, surface.frame().local(place)))
     }
+}
+
+/// The weighted sum of the squares of the coordinates, less a constant.
+fn weighted<N: Float>(
+    [x, y, z]: [Quartic<N>; 3],
+    ([a, b, c], constant): ([N; 3], N),
+) -> Quartic<N> {
+    let mut sum: Quartic<N> = std::array::from_fn(|n| a * x[n] + b * y[n] + c * z[n]);
+    sum[0] -= constant;
+    sum
 }
 
 /// The square of a polynomial of degree two.
@@ -163,8 +175,16 @@ fn size<N: Float>(surface: &Surface<N>, away: N) -> N {
         Surface::Sphere(s) => (away + s.radius, 2),
         Surface::Cone(_) => (away, 2),
         Surface::Torus(s) => (away + s.major.abs() + s.minor, 4),
+        Surface::EllipticCylinder(s) => return weight(s.equation(), away),
+        Surface::EllipticCone(s) => return weight(s.equation(), away),
     };
     lengths.powi(degree)
+}
+
+/// A bound of the terms of an equation at the distance `away` from its origin.
+fn weight<N: Float>((squares, constant): ([N; 3], N), away: N) -> N {
+    let most = squares.into_iter().map(N::abs).fold(N::ZERO, N::max);
+    most * away * away + constant
 }
 
 /// The ratio of the polynomial to the level, over a box in the surface's frame.
@@ -179,6 +199,11 @@ fn conjugate<N: Float>(surface: &Surface<N>, [x, y, z]: [Interval<N>; 3]) -> Int
             let far = (across + Interval::point(s.major)).square();
             let far = far + z.square() - Interval::point(s.minor * s.minor);
             far.scale(N::TWO * s.minor)
+        }
+        Surface::EllipticCylinder(s) => s.slope([x, y, z]).scale(s.equation().1),
+        Surface::EllipticCone(s) => {
+            let sum = s.radius([x, y, z]) + z;
+            sum.over(s.inverse_slope([x, y, z])).scale(s.sine_squared())
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::frame::Frame;
-use super::quadric_curve::{Height, QuadricCurve, Ruled, Sweep};
+use super::quadric_curve::{Height, QuadricCurve, Sweep};
 use super::surface::Surface;
 use super::torus_curve::TorusCurve;
 use super::torus_parameter::TorusParameter;
@@ -33,6 +33,14 @@ pub(crate) fn surface_value(surface: &Surface) -> Value {
             placed(name, "center", frame),
             &[("major", s.major), ("minor", s.minor)],
         ),
+        Surface::EllipticCylinder(s) => {
+            let [a, b] = s.radii;
+            with(placed(name, "origin", frame), &[("a", a), ("b", b)])
+        }
+        Surface::EllipticCone(s) => {
+            let [a, b] = s.slopes;
+            with(placed(name, "apex", frame), &[("a", a), ("b", b)])
+        }
     }
 }
 
@@ -97,16 +105,7 @@ pub(crate) fn value(curve: &Curve) -> Value {
 }
 
 fn quartic(q: &QuadricCurve) -> Value {
-    let base = match &q.base {
-        Ruled::Cylinder(s) => with(
-            placed("cylinder", "origin", &s.frame),
-            &[("radius", s.radius)],
-        ),
-        Ruled::Cone(s) => with(
-            placed("cone", "apex", &s.frame),
-            &[("sin", s.sin), ("cos", s.cos)],
-        ),
-    };
+    let base = surface_value(&q.base.surface());
     let sweep = match q.sweep {
         Sweep::Round { turns } => json!({"turns": turns}),
         Sweep::Oval { mid, half } => json!({"mid": mid, "half": half}),

@@ -1,16 +1,19 @@
 //! The intersection curve of two quadrics, parameterised over the rulings of one of them.
 //!
 //! Notation: a ruling of a cylinder is r(u) + w z, one of a cone's nappe (1/w) d(u) from its apex,
-//! with u the angle. Along a ruling the other quadric is k w^2 + 2 B(u) w + C(u) = 0, with constant
+//! with u the angle, the eccentric one of an elliptic surface. Along a ruling the other quadric is k w^2 + 2 B(u) w + C(u) = 0, with constant
 //! k, B of degree one and C of degree two in (cos u, sin u). Hence w = (-B ± √Δ)/k with Δ = B^2 - k
 //! C. At a simple real root of Δ a ruling is tangent to the other quadric; at a double root the
 //! curve crosses itself. The parameter t is chosen so that √Δ is analytic in it. Over an arc
 //! between two simple roots u = mid - half cos t, and √Δ changes sign with sin t. At a double root
 //! √Δ changes sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
-use super::surface::{Cone, Cylinder};
+use super::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
+use super::frame::Frame;
+use super::surface::{Cone, Cylinder, Surface};
 use super::trigonometric::{Trig1, Trig2, trig1};
 use crate::number::float::{Analytic, Float, harmonic};
+use nalgebra::Point3;
 
 /// The surface whose rulings carry the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +22,72 @@ pub(crate) enum Ruled<N: Float = f64> {
     Cylinder(Cylinder<N>),
     /// A cone's nappe; 1/w is the height above the apex.
     Cone(Cone<N>),
+    /// An elliptic cylinder.
+    EllipticCylinder(EllipticCylinder<N>),
+    /// An elliptic cone's nappe.
+    EllipticCone(EllipticCone<N>),
+}
+
+impl<N: Float> Ruled<N> {
+    /// A surface with rulings; `None` for other surfaces.
+    pub(super) fn new(surface: &Surface<N>) -> Option<Self> {
+        Some(match surface {
+            Surface::Cylinder(s) => Self::Cylinder(*s),
+            Surface::Cone(s) => Self::Cone(*s),
+            Surface::EllipticCylinder(s) => Self::EllipticCylinder(*s),
+            Surface::EllipticCone(s) => Self::EllipticCone(*s),
+            Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => return None,
+        })
+    }
+
+    /// The surface.
+    pub(super) fn surface(&self) -> Surface<N> {
+        match self {
+            Self::Cylinder(s) => Surface::Cylinder(*s),
+            Self::Cone(s) => Surface::Cone(*s),
+            Self::EllipticCylinder(s) => Surface::EllipticCylinder(*s),
+            Self::EllipticCone(s) => Surface::EllipticCone(*s),
+        }
+    }
+
+    /// The surface's frame.
+    pub(super) fn frame(&self) -> &Frame<N> {
+        match self {
+            Self::Cylinder(s) => &s.frame,
+            Self::Cone(s) => &s.frame,
+            Self::EllipticCylinder(s) => &s.frame,
+            Self::EllipticCone(s) => &s.frame,
+        }
+    }
+
+    /// Whether the rulings pass through an apex.
+    pub(super) fn is_cone(&self) -> bool {
+        match self {
+            Self::Cone(_) | Self::EllipticCone(_) => true,
+            Self::Cylinder(_) | Self::EllipticCylinder(_) => false,
+        }
+    }
+
+    /// The radii along x and y of the cross section; of a cone at the height 1.
+    pub(super) fn radii(&self) -> [N; 2] {
+        match self {
+            Self::Cylinder(s) => [s.radius; 2],
+            Self::Cone(s) => [s.sin / s.cos; 2],
+            Self::EllipticCylinder(s) => s.radii,
+            Self::EllipticCone(s) => s.slopes,
+        }
+    }
+
+    /// The angle of the ruling through a point.
+    pub(super) fn angle(&self, p: &Point3<N>) -> N {
+        let q = self.frame().coordinates(p);
+        match self {
+            Self::Cylinder(_) | Self::Cone(_) => q.y.atan2(q.x),
+            Self::EllipticCylinder(_) | Self::EllipticCone(_) => {
+                eccentric_angle([q.x, q.y], self.radii())
+            }
+        }
+    }
 }
 
 /// The angle u as a function of the parameter t.
@@ -176,8 +245,8 @@ impl<N: Float> QuadricCurve<N> {
     /// The parameters at which a curve with one point on each ruling passes through the cone's
     /// apex: the zeros of B.
     pub(super) fn apex_parameters(&self) -> Vec<N> {
-        match (self.base, self.height) {
-            (Ruled::Cone(_), Height::Rational { linear, .. }) => {
+        match (self.base.is_cone(), self.height) {
+            (true, Height::Rational { linear, .. }) => {
                 let [mean, cos, sin] = linear;
                 let (middle, size) = (sin.atan2(cos), cos.hypot(sin));
                 let level = -mean / size;
@@ -255,16 +324,13 @@ impl<N: Float> QuadricCurve<N> {
         let u = self.angle(t);
         let (sin, cos) = u.sin_cos();
         let (n, d) = self.quotient(t, u, (sin, cos));
-        match &self.base {
-            Ruled::Cylinder(s) => {
-                s.frame
-                    .world_of([cos.scale(s.radius), sin.scale(s.radius), n.over(d)])
-            }
-            Ruled::Cone(s) => {
-                let v = d.over(n);
-                let rho = v.scale(s.sin / s.cos);
-                s.frame.world_of([rho * cos, rho * sin, v])
-            }
+        let [a, b] = self.base.radii();
+        let frame = self.base.frame();
+        if self.base.is_cone() {
+            let v = d.over(n);
+            frame.world_of([v.scale(a) * cos, v.scale(b) * sin, v])
+        } else {
+            frame.world_of([cos.scale(a), sin.scale(b), n.over(d)])
         }
     }
 }

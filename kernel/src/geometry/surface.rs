@@ -1,8 +1,9 @@
-//! The five surfaces that bound PADL-2 solids.
+//! The surfaces that bound solids: planes, quadrics and tori.
 //!
 //! Each is oriented: its negative side is the inside of the primitive it bounds. A cone is one
 //! nappe. Angles are in radians, lengths in the part's unit.
 
+use super::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use super::frame::Frame;
 use crate::geometry::vector::Length;
 use crate::number::analytic::dot;
@@ -145,6 +146,10 @@ pub enum Surface<N: Float = f64> {
     Sphere(Sphere<N>),
     /// A torus.
     Torus(Torus<N>),
+    /// An elliptic cylinder.
+    EllipticCylinder(EllipticCylinder<N>),
+    /// One nappe of an elliptic cone.
+    EllipticCone(EllipticCone<N>),
 }
 
 /// The kinds of surfaces, by name.
@@ -160,6 +165,10 @@ pub enum SurfaceKind {
     Sphere,
     /// A torus.
     Torus,
+    /// An elliptic cylinder.
+    EllipticCylinder,
+    /// An elliptic cone.
+    EllipticCone,
 }
 
 impl SurfaceKind {
@@ -171,6 +180,8 @@ impl SurfaceKind {
             Self::Cone => "cone",
             Self::Sphere => "sphere",
             Self::Torus => "torus",
+            Self::EllipticCylinder => "elliptic cylinder",
+            Self::EllipticCone => "elliptic cone",
         }
     }
 }
@@ -184,6 +195,8 @@ impl<N: Float> Surface<N> {
             Self::Cone(_) => SurfaceKind::Cone,
             Self::Sphere(_) => SurfaceKind::Sphere,
             Self::Torus(_) => SurfaceKind::Torus,
+            Self::EllipticCylinder(_) => SurfaceKind::EllipticCylinder,
+            Self::EllipticCone(_) => SurfaceKind::EllipticCone,
         }
     }
 
@@ -195,6 +208,8 @@ impl<N: Float> Surface<N> {
             Self::Cone(s) => &s.frame,
             Self::Sphere(s) => &s.frame,
             Self::Torus(s) => &s.frame,
+            Self::EllipticCylinder(s) => &s.frame,
+            Self::EllipticCone(s) => &s.frame,
         }
     }
 
@@ -231,6 +246,8 @@ impl<N: Float> Surface<N> {
                 (across.square() + z.square() - S::constant(s.minor * s.minor))
                     .scale(N::HALF / s.minor)
             }
+            Self::EllipticCylinder(s) => s.level(p),
+            Self::EllipticCone(s) => s.level(p),
         }
     }
 
@@ -248,11 +265,12 @@ impl<N: Float> Surface<N> {
                 let sum = across + q.z * q.z + s.major * s.major - s.minor * s.minor;
                 sum * sum - N::from_f64(4.0) * s.major * s.major * across
             }
+            Self::EllipticCylinder(s) => of_equation(&q, s.equation()),
+            Self::EllipticCone(s) => of_equation(&q, s.equation()),
         }
     }
 
-    /// The signed distance of a point, negative inside. It is exact for all five surfaces except
-    /// behind the apex of a cone and behind a pole of a torus, where it is a lower bound of the
+    /// The signed distance of a point, negative inside. It is exact except behind the apex of a cone and behind a pole of a torus, where it is a lower bound of the
     /// distance with the right sign.
     pub fn distance(&self, p: &Point3<N>) -> N {
         let q = self.frame().coordinates(p);
@@ -262,6 +280,8 @@ impl<N: Float> Surface<N> {
             Self::Cone(s) => q.x.hypot(q.y) * s.cos - q.z * s.sin,
             Self::Sphere(s) => q.length() - s.radius,
             Self::Torus(s) => (q.x.hypot(q.y) - s.major).hypot(q.z) - s.minor,
+            Self::EllipticCylinder(s) => s.distance(&q),
+            Self::EllipticCone(s) => s.distance(&q),
         }
     }
 
@@ -288,6 +308,14 @@ impl<N: Float> Surface<N> {
                 }
                 let k = (rho - s.major) / rho;
                 Vector3::new(q.x * k, q.y * k, q.z)
+            }
+            Self::EllipticCylinder(s) => s.gradient(&q),
+            Self::EllipticCone(s) => {
+                let gradient = s.gradient(&q);
+                if gradient == Vector3::zeros() {
+                    return -f.z;
+                }
+                gradient
             }
         };
         f.vector(&local.unit())
@@ -323,6 +351,9 @@ impl<N: Float> Surface<N> {
                 let cos = (rho - s.major) / s.minor;
                 parallel * cos / rho + (a.dot(&b) - parallel) / s.minor
             }
+            // The gradient is linear in the coordinates.
+            Self::EllipticCylinder(s) => s.gradient(&a).dot(&b) / s.gradient(&q).length(),
+            Self::EllipticCone(s) => s.gradient(&a).dot(&b) / s.gradient(&q).length(),
         }
     }
 
@@ -331,12 +362,19 @@ impl<N: Float> Surface<N> {
         matches!(self, Self::Torus(torus) if torus.is_ring())
     }
 
+    /// Whether it is elliptic: its cross sections are ellipses.
+    pub fn is_elliptic(&self) -> bool {
+        matches!(self, Self::EllipticCylinder(_) | Self::EllipticCone(_))
+    }
+
     /// The points at which the surface has no normal: the apex of a cone, the poles of a torus.
     pub fn apexes(&self) -> impl Iterator<Item = Point3<N>> + use<N> {
         let (apex, torus) = match self {
-            Self::Cone(s) => (Some(s.frame.origin), None),
+            Self::Cone(_) | Self::EllipticCone(_) => (Some(self.frame().origin), None),
             Self::Torus(s) => (None, Some(*s)),
-            Self::Plane(_) | Self::Cylinder(_) | Self::Sphere(_) => (None, None),
+            Self::Plane(_) | Self::Cylinder(_) | Self::Sphere(_) | Self::EllipticCylinder(_) => {
+                (None, None)
+            }
         };
         let poles = torus.into_iter().flat_map(|torus| torus.poles());
         apex.into_iter().chain(poles)
@@ -344,7 +382,8 @@ impl<N: Float> Surface<N> {
 
     /// The parameters of a point on the surface: (x, y) of a plane; the angle and the height of a
     /// cylinder and of a cone (above the apex); longitude and latitude of a sphere; the angles
-    /// about the axis and about the tube of a torus. Angles lie in [0, 2 pi), the latitude in
+    /// about the axis and about the tube of a torus. Those of the elliptic surfaces are those of
+    /// the round ones of which they are images. Angles lie in [0, 2 pi), the latitude in
     /// [-pi/2, pi/2], the angle about a tube that reaches the axis in [-pi, pi].
     pub fn parameters(&self, p: &Point3<N>) -> [N; 2] {
         let q = self.frame().coordinates(p);
@@ -360,6 +399,10 @@ impl<N: Float> Surface<N> {
                     false => about_tube,
                 };
                 [turn(q.y.atan2(q.x)), about_tube]
+            }
+            Self::EllipticCylinder(EllipticCylinder { radii, .. })
+            | Self::EllipticCone(EllipticCone { slopes: radii, .. }) => {
+                [turn(eccentric_angle([q.x, q.y], *radii)), q.z]
             }
         }
     }
@@ -383,6 +426,8 @@ impl<N: Float> Surface<N> {
                 let rho = s.major + s.minor * v.cos();
                 f.point(rho * cos, rho * sin, s.minor * v.sin())
             }
+            Self::EllipticCylinder(s) => f.point(s.radii[0] * cos, s.radii[1] * sin, v),
+            Self::EllipticCone(s) => f.point(v * s.slopes[0] * cos, v * s.slopes[1] * sin, v),
         }
     }
 
@@ -390,7 +435,11 @@ impl<N: Float> Surface<N> {
     pub fn periods(&self) -> [Option<N>; 2] {
         match self {
             Self::Plane(_) => [None, None],
-            Self::Cylinder(_) | Self::Cone(_) | Self::Sphere(_) => [Some(N::TAU), None],
+            Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Sphere(_)
+            | Self::EllipticCylinder(_)
+            | Self::EllipticCone(_) => [Some(N::TAU), None],
             Self::Torus(s) => [Some(N::TAU), s.is_ring().then_some(N::TAU)],
         }
     }
@@ -403,6 +452,13 @@ impl<N: Float> Surface<N> {
         }
         q
     }
+}
+
+/// The value of an equation without mixed products at a local point: the coefficients of the squares,
+/// and the constant.
+fn of_equation<N: Float>(q: &Vector3<N>, (squares, constant): ([N; 3], N)) -> N {
+    let all: N = (0..3).map(|i| squares[i] * q[i] * q[i]).sum();
+    all - constant
 }
 
 /// The distance of (x, y) outside the circle of radius r about the origin: (x² + y² - r²)/(ρ + r).
@@ -431,7 +487,7 @@ pub(crate) fn sheets(frame: Frame) -> [Torus; 3] {
 
 /// One surface of each kind about a frame, for tests.
 #[cfg(test)]
-pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 5] {
+pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 7] {
     let (sin, cos) = (0.6, 0.8);
     [
         Surface::Plane(Plane { frame }),
@@ -442,6 +498,14 @@ pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2])
             frame,
             major,
             minor,
+        }),
+        Surface::EllipticCylinder(EllipticCylinder {
+            frame,
+            radii: [radius, 0.75 * radius],
+        }),
+        Surface::EllipticCone(EllipticCone {
+            frame,
+            slopes: [0.75, 0.5],
         }),
     ]
 }

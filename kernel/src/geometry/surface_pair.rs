@@ -4,6 +4,8 @@
 //! and from the exact coefficients with more bits where those are inconclusive. The constructions
 //! use the decisions and compute in f64. Directions need not have unit length.
 
+mod elliptic;
+
 use super::region_of_interest::RegionOfInterest;
 use super::surface::Surface;
 use crate::number::enclosable::Enclosable;
@@ -13,6 +15,7 @@ use crate::number::predicates::CertifiedDistance;
 use crate::number::rational::Rational;
 use crate::number::rational_interval::RationalInterval;
 use crate::number::separation_bound::SeparationBound;
+pub use elliptic::ConjugateAxes;
 
 /// The defining coefficients of a surface, over some number type.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +30,9 @@ pub struct Coefficients<N> {
     pub size: N,
     /// The radius of a torus's tube; unused for other surfaces.
     pub tube: N,
+    /// The conjugate axes of an elliptic surface, which are in place of its size: the images of the
+    /// axes of a round cylinder of radius 1, or a round cone whose half angle has the tangent 1.
+    pub axes: Option<Box<ConjugateAxes<N>>>,
 }
 
 impl<N> Coefficients<N> {
@@ -37,6 +43,10 @@ impl<N> Coefficients<N> {
             direction: self.direction.each_ref().map(&f),
             size: f(&self.size),
             tube: f(&self.tube),
+            axes: self
+                .axes
+                .as_ref()
+                .map(|axes| Box::new(axes.each_ref().map(|axis| axis.each_ref().map(&f)))),
         }
     }
 }
@@ -88,17 +98,14 @@ impl<'a, N: Float> Carrier<'a, N> {
     /// Ranges that contain the exact coefficients: each number of a surface is within a few units
     /// in the last place, relative to its length.
     fn ranges(&self) -> Coefficients<Interval<N>> {
-        let near = |x: N, size: N| Interval::around(x, N::from_f64(SLACK) * N::EPSILON * size);
-        numbers(
-            self.surface,
-            |x| near(x, Float::abs(x)),
-            |x| near(x, N::ONE),
-        )
+        numbers(self.surface, |x, size| {
+            Interval::around(x, N::from_f64(SLACK) * N::EPSILON * size)
+        })
     }
 
     /// The surface's own numbers.
     pub(crate) fn numbers(&self) -> Coefficients<N> {
-        numbers(self.surface, |x| x, |x| x)
+        numbers(self.surface, |x, _| x)
     }
 
     /// The exact coefficients, for computation to so many bits.
@@ -108,10 +115,10 @@ impl<'a, N: Float> Carrier<'a, N> {
     }
 
     fn exact(&self) -> Coefficients<Rational> {
-        let number = |x: N| x.exact().unwrap_or_default();
+        let number = |x: N, _| x.exact().unwrap_or_default();
         match self.source {
             Source::Rounded(exact) => exact(),
-            Source::Given | Source::Constructed => numbers(self.surface, number, number),
+            Source::Given | Source::Constructed => numbers(self.surface, number),
         }
     }
 
@@ -123,25 +130,36 @@ impl<'a, N: Float> Carrier<'a, N> {
 /// The bound of the error of a surface's numbers, in units in the last place of what they measure.
 const SLACK: f64 = 8.0;
 
-/// The coefficients of a surface: `of` converts lengths, `along` the components of directions.
-fn numbers<N: Float, M>(
-    surface: &Surface<N>,
-    of: impl Fn(N) -> M,
-    along: impl Fn(N) -> M,
-) -> Coefficients<M> {
+/// The coefficients of a surface. `of` converts a number; its rounding error is proportional to the
+/// number given second.
+fn numbers<N: Float, M>(surface: &Surface<N>, of: impl Fn(N, N) -> M) -> Coefficients<M> {
     let frame = surface.frame();
+    let length = |x: N| of(x, Float::abs(x));
+    let axes = |[a, b]: [N; 2]| {
+        let axes = [(frame.x, a), (frame.y, b), (frame.z, N::ONE)];
+        let rounding = N::from_f64(SLACK) * a.max(b).max(N::ONE);
+        Some(Box::new(axes.map(|(axis, size)| {
+            <[N; 3]>::from(axis * size).map(|x| of(x, rounding))
+        })))
+    };
     let (size, tube) = match surface {
         Surface::Plane(_) => (N::ZERO, N::ZERO),
         Surface::Cylinder(c) => (c.radius, N::ZERO),
         Surface::Cone(c) => (c.sin / c.cos, N::ZERO),
         Surface::Sphere(s) => (s.radius, N::ZERO),
         Surface::Torus(t) => (t.major, t.minor),
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => (N::ONE, N::ZERO),
     };
     Coefficients {
-        point: <[N; 3]>::from(frame.origin).map(&of),
-        direction: <[N; 3]>::from(frame.z).map(&along),
-        size: of(size),
-        tube: of(tube),
+        point: <[N; 3]>::from(frame.origin).map(&length),
+        direction: <[N; 3]>::from(frame.z).map(|x| of(x, N::ONE)),
+        size: length(size),
+        tube: length(tube),
+        axes: match surface {
+            Surface::EllipticCylinder(s) => axes(s.radii),
+            Surface::EllipticCone(s) => axes(s.slopes),
+            _ => None,
+        },
     }
 }
 
@@ -186,7 +204,7 @@ pub enum PairMeasure {
     PlaneAcrossCylinder,
     /// The angle by which a plane through a cone's apex misses tangency along a ruling.
     PlaneOnRuling,
-    /// The angle between a plane and the nearer (`false`) or the farther ruling of a cone.
+    /// The angle between a plane and the nearer (`false`) or the farther ruling of a round cone.
     PlaneAlongRuling(bool),
     /// Two spheres: the gap between them.
     AdjacentSpheres,
@@ -370,6 +388,31 @@ impl<R: Enclosable> Over<R> {
                 let tubes = (self.a.tube.clone() - self.b.tube.clone()).abs();
                 between + self.sine() * self.a.size.clone() + sizes + tubes
             }
+            Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => self.elliptic_apart(kind),
+        }
+    }
+
+    /// The separation of two elliptic surfaces of the same kind.
+    fn elliptic_apart<N: Float>(&self, kind: &Surface<N>) -> R {
+        let (Some(first), Some(second)) = (&self.a.axes, &self.b.axes) else {
+            return norm(&self.away());
+        };
+        match kind {
+            Surface::EllipticCone(_) => {
+                norm(&self.away()) + elliptic::cones_apart(first, second) * self.radius.clone()
+            }
+            _ => {
+                let drift = self.sine() * self.radius.clone();
+                self.between_axes() + drift + elliptic::sections_apart(first, second)
+            }
+        }
+    }
+
+    /// Half the width of a cylinder, the second, along the normal of a plane, the first.
+    fn half_width(&self) -> R {
+        match &self.b.axes {
+            Some(axes) => elliptic::half_width(axes, &self.a.direction),
+            None => self.b.size.clone(),
         }
     }
 
@@ -396,6 +439,9 @@ impl<R: Enclosable> Over<R> {
     }
 
     fn plane_on_ruling(&self) -> R {
+        if let Some(axes) = &self.b.axes {
+            return elliptic::off_tangency(axes, &self.a.direction) * self.radius.clone();
+        }
         let (sin, cos) = Self::half_angle(&self.b.size);
         (self.cosine().abs() * cos - self.sine() * sin) * self.radius.clone()
     }
@@ -409,6 +455,10 @@ impl<R: Enclosable> Over<R> {
 
     fn point_on_quadric<N: Float>(&self, quadric: &Surface<N>) -> R {
         let away = self.away();
+        if let Some(axes) = &self.a.axes {
+            let is_cone = matches!(quadric, Surface::EllipticCone(_));
+            return elliptic::distance(axes, &away, is_cone);
+        }
         match quadric {
             Surface::Sphere(_) => norm(&away) - self.a.size.clone(),
             Surface::Cone(_) => {
@@ -443,7 +493,7 @@ impl<R: Enclosable> Over<R> {
             PairMeasure::AcrossSpine => self.across_spine() * self.radius.clone(),
             PairMeasure::PlaneOnSphere => self.along(&self.away()).abs() - b.size.clone(),
             PairMeasure::PlaneOnCylinder => {
-                self.along(&minus(&self.foot(), &a.point)).abs() - b.size.clone()
+                self.along(&minus(&self.foot(), &a.point)).abs() - self.half_width()
             }
             PairMeasure::PlaneAcrossCylinder => self.sine() * b.size.clone(),
             PairMeasure::PlaneOnRuling => self.plane_on_ruling(),

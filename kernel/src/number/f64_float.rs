@@ -108,6 +108,12 @@ impl Analytic for f64 {
     fn root(self) -> Self {
         f64::sqrt(self.max(0.0))
     }
+    fn known_within(self, [lo, hi]: [Self; 2]) -> Self {
+        match self >= lo {
+            true => self.min(hi),
+            false => lo,
+        }
+    }
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
     }

@@ -139,6 +139,8 @@ pub trait Analytic:
     fn over(self, divisor: Self) -> Self;
     /// The square root; negative values are clamped to zero.
     fn root(self) -> Self;
+    /// The same value, which is known to lie in a range; the lower end in place of NaN.
+    fn known_within(self, range: [Self::Float; 2]) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
     /// Sine and cosine of twice the angle, from `at`, the sine and cosine of the angle.

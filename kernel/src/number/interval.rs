@@ -319,6 +319,9 @@ impl<N: Float> Analytic for Interval<N> {
             hi: up(self.hi.max(N::ZERO).sqrt()),
         }
     }
+    fn known_within(self, [lo, hi]: [N; 2]) -> Self {
+        self.intersection(Self { lo, hi })
+    }
     fn sin_cos(self) -> (Self, Self) {
         if let Some([sin, cos]) = self.coarsely(Interval::waves) {
             return (sin, cos);

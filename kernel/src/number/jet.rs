@@ -133,6 +133,12 @@ impl<S: JetScalar> Analytic for Jet<S> {
         let ddh = -dh.over(self.v).times(0.5);
         self.chain(root, dh, ddh)
     }
+    fn known_within(self, range: [S::Float; 2]) -> Self {
+        Self {
+            v: self.v.known_within(range),
+            ..self
+        }
+    }
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = self.v.sin_cos();
         (self.chain(s, c, -s), self.chain(c, -s, -c))

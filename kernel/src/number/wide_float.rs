@@ -50,6 +50,12 @@ macro_rules! wide_float {
             fn root(self) -> Self {
                 Float::max(self, Self::ZERO).sqrt()
             }
+            fn known_within(self, [lo, hi]: [Self; 2]) -> Self {
+                match self >= lo {
+                    true => Float::min(self, hi),
+                    false => lo,
+                }
+            }
             fn sin_cos(self) -> (Self, Self) {
                 circular::sin_cos(self)
             }

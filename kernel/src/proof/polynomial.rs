@@ -1,7 +1,7 @@
 //! Polynomials in x, y and z with integer coefficients, which represent surfaces without rounding.
 
 use crate::geometry::surface::Surface;
-use crate::geometry::surface_pair::Coefficients;
+use crate::geometry::surface_pair::{Coefficients, ConjugateAxes};
 use crate::number::float::Float;
 use crate::number::rational::Rational;
 use dashu::base::{BitTest, Gcd};
@@ -143,6 +143,10 @@ impl Polynomial {
 
     /// The polynomial of a surface; that of a cone has both nappes.
     pub fn new<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
+        if let Some(axes) = &exact.axes {
+            let is_cone = matches!(kind, Surface::EllipticCone(_));
+            return Self::elliptic(&exact.point, axes, is_cone);
+        }
         let IntegralOffset {
             components: v,
             factor: q,
@@ -158,10 +162,10 @@ impl Polynomial {
             Surface::Sphere(_) => vv
                 .scaled(&(&b * &b))
                 .minus(&Self::constant(&a * &a * &q * &q)),
-            Surface::Cylinder(_) => across
+            Surface::Cylinder(_) | Surface::EllipticCylinder(_) => across
                 .scaled(&(&b * &b))
                 .minus(&dd.scaled(&(&a * &a * &q * &q))),
-            Surface::Cone(_) => {
+            Surface::Cone(_) | Surface::EllipticCone(_) => {
                 let along = square(&up).scaled(&(&a * &a + &b * &b));
                 along.minus(&dd.times(&vv).scaled(&(&b * &b)))
             }
@@ -177,6 +181,43 @@ impl Polynomial {
         };
         all.reduced()
     }
+
+    /// The polynomial of an elliptic surface with a point and conjugate axes x, y and z:
+    /// (y × z · v)² + (z × x · v)², less (x × y · v)² for a cone, or the square of the volume.
+    fn elliptic(point: &[Rational; 3], axes: &ConjugateAxes<Rational>, is_cone: bool) -> Self {
+        let IntegralOffset {
+            components: v,
+            factor: q,
+        } = away(point);
+        let flat: [Rational; 9] = std::array::from_fn(|i| axes[i / 3][i % 3].clone());
+        let all = least_multiple(&flat);
+        let scaled = |axis: &[Rational; 3]| {
+            let whole = |c: &Rational| c.numerator() * (&all / IBig::from(c.denominator().clone()));
+            axis.each_ref().map(|c| Self::constant(whole(c)))
+        };
+        let [x, y, z] = axes.each_ref().map(scaled);
+        let normals = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
+        let volume = dot(&x, &normals[0]).scaled(&q);
+        let [a, b, c] = normals.each_ref().map(|n| dot(n, &v));
+        let square = |p: &Self| p.times(p);
+        let across = square(&a).plus(&square(&b));
+        match is_cone {
+            true => across.minus(&square(&c)),
+            // The columns have the common denominator in all components: v is divided by it as well.
+            false => across.scaled(&(&all * &all)).minus(&square(&volume)),
+        }
+        .reduced()
+    }
+}
+
+/// The least common multiple of the denominators.
+fn least_multiple(numbers: &[Rational]) -> IBig {
+    let least = |a: UBig, b: UBig| {
+        let common = (&a).gcd(&b);
+        a / common * b
+    };
+    let all = numbers.iter().map(|x| x.denominator().clone());
+    IBig::from(all.fold(UBig::ONE, least))
 }
 
 /// The numerator and the denominator.
@@ -192,12 +233,7 @@ struct IntegralMultiple {
 
 /// Three numbers times the smallest factor that makes them integers.
 fn whole(numbers: &[Rational; 3]) -> IntegralMultiple {
-    let [a, b, c] = numbers.each_ref().map(|x| x.denominator().clone());
-    let least = |a: UBig, b: UBig| {
-        let common = (&a).gcd(&b);
-        a / common * b
-    };
-    let all = IBig::from(least(least(a, b), c));
+    let all = least_multiple(numbers);
     let times = |x: &Rational| x.numerator() * (&all / IBig::from(x.denominator().clone()));
     IntegralMultiple {
         numbers: numbers.each_ref().map(times),

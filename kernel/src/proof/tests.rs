@@ -24,6 +24,7 @@ fn surface(kind: usize, point: [Rational; 3], direction: [i64; 3], size: Rationa
         direction: whole(direction),
         size,
         tube: ratio(1, 1),
+        axes: None,
     };
     let kinds = of_every_kind(Frame::world(), 1.0, [2.0, 1.0]);
     Polynomial::new(&kinds[kind], &exact)

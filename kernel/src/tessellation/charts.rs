@@ -13,8 +13,8 @@ use crate::brep::Brep;
 use crate::brep::locate::{FaceLocator, PointLocation};
 use crate::brep::topology::{FaceId, Sense};
 use crate::geometry::frame::Frame;
-use crate::geometry::surface::{Cylinder, Sphere, Surface, Torus, turn};
-use nalgebra::{Point2, Point3, Vector3};
+use crate::geometry::surface::{Sphere, Surface, Torus, turn};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 use std::f64::consts::TAU;
 
 /// A map from a face to the plane.
@@ -22,10 +22,12 @@ use std::f64::consts::TAU;
 pub(super) enum Chart {
     /// The plane's own coordinates.
     Plane(Frame),
-    /// Polar coordinates: the angle, and a radius that grows from 1 to 2 along the axis.
-    Cylinder(Cylinder, [f64; 2]),
-    /// Polar coordinates: the angle, and the distance from the axis.
-    Cone(Frame, f64),
+    /// Polar coordinates: the angle, and a radius that grows from 1 to 2 along the axis. The radii of
+    /// the cross section, and the range of heights.
+    Cylinder(Frame, [f64; 2], [f64; 2]),
+    /// Polar coordinates: the angle, and the distance from the axis, with an elliptic cross section
+    /// stretched along y to a circle. The ratio of its radii, and the height over the distance.
+    Cone(Frame, f64, f64),
     /// Stereographic projection; z points to its centre. If the centre is a point of the face, a
     /// cap about it, whose angular radius is given last, is not in the chart.
     Sphere(Frame, f64, Option<f64>),
@@ -55,14 +57,13 @@ impl Chart {
     ) -> Self {
         match *brep.surface(face) {
             Surface::Plane(s) => Self::Plane(s.frame),
-            Surface::Cylinder(s) => {
-                let heights = points_of(brep, face, lines).map(|p| s.frame.coordinates(&p).z);
-                let range = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], z| {
-                    [lo.min(z), hi.max(z)]
-                });
-                Self::Cylinder(s, range)
+            Surface::Cylinder(s) => Self::cylinder(brep, face, lines, [s.radius; 2]),
+            Surface::EllipticCylinder(s) => Self::cylinder(brep, face, lines, s.radii),
+            Surface::Cone(s) => Self::Cone(s.frame, 1.0, s.cos / s.sin),
+            Surface::EllipticCone(s) => {
+                let [a, b] = s.slopes;
+                Self::Cone(s.frame, a / b, 1.0 / a)
             }
-            Surface::Cone(s) => Self::Cone(s.frame, s.cos / s.sin),
             Surface::Sphere(s) => {
                 let around = Around::new(brep, face, SphericalMap::Sphere(s), lines);
                 let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
@@ -84,14 +85,27 @@ impl Chart {
         }
     }
 
+    fn cylinder(brep: &Brep, face: FaceId, lines: &Polylines, radii: [f64; 2]) -> Self {
+        let frame = *brep.surface(face).frame();
+        let heights = points_of(brep, face, lines).map(|p| frame.coordinates(&p).z);
+        let range = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], z| {
+            [lo.min(z), hi.max(z)]
+        });
+        Self::Cylinder(frame, radii, range)
+    }
+
     /// The position of a point of the surface in the chart; on a torus measured from the seams.
     pub fn map(&self, p: &Point3<f64>) -> Point2<f64> {
         match self {
-            Self::Plane(f) | Self::Cone(f, _) => f.coordinates(p).xy().into(),
-            Self::Cylinder(s, [lo, hi]) => {
-                let q = s.frame.coordinates(p);
+            Self::Plane(f) => f.coordinates(p).xy().into(),
+            Self::Cone(f, ratio, _) => {
+                let q = f.coordinates(p);
+                Point2::new(q.x, q.y * ratio)
+            }
+            Self::Cylinder(f, [a, b], [lo, hi]) => {
+                let q = f.coordinates(p);
                 let radius = 1.0 + (q.z - lo) / (hi - lo);
-                (q.xy().normalize() * radius).into()
+                (Vector2::new(q.x, q.y * (a / b)).normalize() * radius).into()
             }
             Self::Sphere(f, radius, _) => {
                 let q = f.coordinates(p) / *radius;
@@ -110,12 +124,12 @@ impl Chart {
     pub fn lift(&self, x: &Point2<f64>) -> Point3<f64> {
         match self {
             Self::Plane(f) => f.point(x.x, x.y, 0.0),
-            Self::Cylinder(s, [lo, hi]) => {
+            Self::Cylinder(f, [a, b], [lo, hi]) => {
                 let away = x.coords.norm();
-                let on = x.coords * (s.radius / away);
-                s.frame.point(on.x, on.y, lo + (away - 1.0) * (hi - lo))
+                let on = x.coords * (a / away);
+                f.point(on.x, on.y * (b / a), lo + (away - 1.0) * (hi - lo))
             }
-            Self::Cone(f, slope) => f.point(x.x, x.y, x.coords.norm() * slope),
+            Self::Cone(f, ratio, slope) => f.point(x.x, x.y / ratio, x.coords.norm() * slope),
             Self::Sphere(f, radius, _) => {
                 let square = x.coords.norm_squared();
                 let part = 2.0 * radius / (1.0 + square);

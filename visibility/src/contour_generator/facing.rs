@@ -86,8 +86,8 @@ pub fn facing(scene: &Scene<'_>, coedge: CoedgeId, t: f64) -> Facing {
 pub fn is_edge_on(scene: &Scene<'_>, surface: &Surface) -> bool {
     match (surface, scene.projection.sight) {
         (Surface::Plane(s), _) => scene.edge_on(&s.frame.origin, &s.frame.z),
-        (Surface::Cylinder(s), ViewRay::Direction(d)) => {
-            s.frame.z.cross(&d).norm().is_within(scene.tilt)
+        (Surface::Cylinder(_) | Surface::EllipticCylinder(_), ViewRay::Direction(d)) => {
+            surface.frame().z.cross(&d).norm().is_within(scene.tilt)
         }
         _ => false,
     }

@@ -3,7 +3,8 @@
 //! Notation, in the surface's own frame: P a point, N its outward normal, E the eye, r = P - E the
 //! line of sight (for parallel lines its constant direction). A limb is N·r = 0 on the surface
 //! (equation 6 of the paper). For a quadric that is the section with the polar plane of the eye:
-//! a circle of a sphere, rulings of a cylinder or a cone. For a torus it is, in its angles,
+//! a circle of a sphere, rulings of a cylinder or a cone. Affine maps keep that, so an elliptic surface
+//! has the limbs of a round one whose points and eye are divided by the radii. For a torus it is, in its angles,
 //! R cos φ + r - (e_x cos θ + e_y sin θ) cos φ - e_z sin φ = 0. At a cusp the line of sight runs
 //! along the limb: the normal curvature of the surface vanishes along it.
 
@@ -11,6 +12,7 @@ use crate::camera::projection::ViewRay;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
+use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
 use premio_kernel::geometry::trace::trace;
@@ -73,6 +75,8 @@ pub fn limbs(
         Surface::Cone(s) => cone_limbs(s, sight, resolution, tilt),
         Surface::Sphere(s) => sphere_limb(s, sight, resolution).into_iter().collect(),
         Surface::Torus(s) => torus_limbs(s, sight, resolution)?,
+        Surface::EllipticCylinder(s) => elliptic_cylinder_limbs(s, sight, resolution, tilt),
+        Surface::EllipticCone(s) => elliptic_cone_limbs(s, sight, resolution, tilt),
     })
 }
 
@@ -130,6 +134,73 @@ fn cone_limbs(s: &Cone, sight: &ViewRay, resolution: f64, tilt: f64) -> Vec<Limb
                 ..Limb::new(Curve::Line(Line {
                     origin: s.frame.origin,
                     direction: s.frame.z * s.cos + radial * s.sin,
+                }))
+            }
+        })
+        .to_vec()
+}
+
+fn elliptic_cylinder_limbs(
+    s: &EllipticCylinder,
+    sight: &ViewRay,
+    resolution: f64,
+    tilt: f64,
+) -> Vec<Limb> {
+    let [a, b] = s.radii;
+    let (across, level, is_outside) = match local(&s.frame, sight) {
+        LocalSight::Eye(e) => {
+            let eye = s.frame.point(e.x, e.y, 0.0);
+            let distance = Surface::EllipticCylinder(*s).distance(&eye);
+            (e, 1.0, distance.is_beyond(resolution))
+        }
+        LocalSight::Direction(d) => (d, 0.0, d.x.hypot(d.y).is_beyond(tilt)),
+    };
+    if !is_outside {
+        return Vec::new();
+    }
+    let (x, y) = (across.x / a, across.y / b);
+    let Some(half) = half_angle(x.hypot(y), level) else {
+        return Vec::new();
+    };
+    let middle = y.atan2(x);
+    [middle - half, middle + half]
+        .map(|u| {
+            let origin = s.frame.point(a * u.cos(), b * u.sin(), 0.0);
+            Limb::new(Curve::Line(Line {
+                origin,
+                direction: s.frame.z,
+            }))
+        })
+        .to_vec()
+}
+
+fn elliptic_cone_limbs(s: &EllipticCone, sight: &ViewRay, resolution: f64, tilt: f64) -> Vec<Limb> {
+    let (e, least) = match local(&s.frame, sight) {
+        LocalSight::Eye(e) => (e, resolution),
+        LocalSight::Direction(d) => (d, tilt),
+    };
+    // The distance from the nappe on the eye's side.
+    let upright = s.frame.point(e.x, e.y, e.z.abs());
+    if Surface::EllipticCone(*s)
+        .distance(&upright)
+        .is_at_most(least)
+    {
+        return Vec::new();
+    }
+    let [a, b] = s.slopes;
+    let (x, y) = (e.x / a, e.y / b);
+    let Some(half) = half_angle(x.hypot(y), e.z) else {
+        return Vec::new();
+    };
+    let middle = y.atan2(x);
+    [middle - half, middle + half]
+        .map(|u| {
+            let local = Vector3::new(a * u.cos(), b * u.sin(), 1.0).normalize();
+            Limb {
+                apexes: vec![0.0],
+                ..Limb::new(Curve::Line(Line {
+                    origin: s.frame.origin,
+                    direction: s.frame.vector(&local),
                 }))
             }
         })
@@ -367,6 +438,11 @@ fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
         }
         (Surface::Sphere(s), LocalSight::Eye(e)) => plane(e, s.radius * s.radius),
         (Surface::Sphere(_), LocalSight::Direction(d)) => plane(d, 0.0),
+        (Surface::EllipticCylinder(s), LocalSight::Eye(e)) => plane(s.gradient(&e), 1.0),
+        (Surface::EllipticCylinder(s), LocalSight::Direction(d)) => plane(s.gradient(&d), 0.0),
+        (Surface::EllipticCone(s), LocalSight::Eye(e) | LocalSight::Direction(e)) => {
+            plane(s.gradient(&e), 0.0)
+        }
         (Surface::Plane(_) | Surface::Torus(_), _) => None,
     }
 }
@@ -467,7 +543,7 @@ mod tests {
         Frame::toward(Point3::new(1.0, -2.0, 0.5), z, Vector3::new(1.0, 0.2, 0.0))
     }
 
-    fn surfaces() -> [Surface; 4] {
+    fn surfaces() -> [Surface; 6] {
         let frame = tilted();
         [
             Surface::Cylinder(Cylinder { frame, radius: 1.3 }),
@@ -481,6 +557,14 @@ mod tests {
                 frame,
                 major: 2.0,
                 minor: 0.6,
+            }),
+            Surface::EllipticCylinder(EllipticCylinder {
+                frame,
+                radii: [1.3, 0.4],
+            }),
+            Surface::EllipticCone(EllipticCone {
+                frame,
+                slopes: [0.75, 1.5],
             }),
         ]
     }
@@ -517,16 +601,15 @@ mod tests {
     #[test]
     fn from_inside_there_is_no_limb() {
         let eye = ViewRay::Eye(tilted().point(0.1, 0.1, 1.0));
-        for surface in &surfaces()[..3] {
+        let [cylinder, cone, sphere, _, oval, oblique] = surfaces();
+        for surface in &[cylinder, cone, sphere, oval, oblique] {
             assert!(limbs(surface, &eye, 1e-10, 1e-10).unwrap().is_empty());
         }
         // The other nappe's solid angle gives none either.
         let eye = ViewRay::Eye(tilted().point(0.1, 0.1, -1.0));
-        assert!(
-            limbs(&surfaces()[1], &eye, 1e-10, 1e-10)
-                .unwrap()
-                .is_empty()
-        );
+        for surface in &[cone, oblique] {
+            assert!(limbs(surface, &eye, 1e-10, 1e-10).unwrap().is_empty());
+        }
     }
 
     #[test]

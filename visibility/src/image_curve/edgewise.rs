@@ -11,7 +11,7 @@ use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::curve_plane::{line_intersections, plane_roots};
 use premio_kernel::geometry::curve_surface::cut;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::{Cylinder, Plane, Surface};
+use premio_kernel::geometry::surface::{Plane, Surface};
 use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
@@ -21,8 +21,8 @@ use premio_kernel::number::roots::{Roots, isolate};
 /// The cylinder that an image lies on, and where it turns back on itself.
 #[derive(Clone, Debug)]
 pub struct Edgewise {
-    /// A cylinder seen along its axis.
-    pub carrier: Cylinder,
+    /// A cylinder, round or elliptic, seen along its axis.
+    pub carrier: Surface,
     /// The parameters of the turning points.
     pub turns: Vec<f64>,
 }
@@ -45,17 +45,22 @@ impl Edgewise {
         let ViewRay::Direction(sight) = projection.sight else {
             return None;
         };
-        let carrier = surfaces.into_iter().find_map(|surface| match surface {
-            Surface::Cylinder(s) if s.frame.z.cross(&sight).norm().is_within(tilt) => Some(*s),
+        let is_seen_along =
+            |surface: &Surface| surface.frame().z.cross(&sight).norm().is_within(tilt);
+        let (carrier, radius) = surfaces.into_iter().find_map(|surface| match surface {
+            Surface::Cylinder(s) if is_seen_along(surface) => Some((*surface, s.radius)),
+            Surface::EllipticCylinder(s) if is_seen_along(surface) => {
+                Some((*surface, s.radii[0].max(s.radii[1])))
+            }
             _ => None,
         })?;
-        // The turning points are zeros of x y' - y x', the square of the radius times the angle's
-        // derivative.
+        // The turning points are zeros of x y' - y x', the product of both radii times the derivative
+        // of the angle.
         let f = |t: Interval| {
-            let [x, y, _] = carrier.frame.local(curve.jet_over(t));
+            let [x, y, _] = carrier.frame().local(curve.jet_over(t));
             Jet {
-                v: (x.v * y.d - y.v * x.d).scale(1.0 / carrier.radius),
-                d: (x.v * y.dd - y.v * x.dd).scale(1.0 / carrier.radius),
+                v: (x.v * y.d - y.v * x.d).scale(1.0 / radius),
+                d: (x.v * y.dd - y.v * x.dd).scale(1.0 / radius),
                 dd: Interval::ENTIRE,
             }
         };
@@ -68,14 +73,13 @@ impl Edgewise {
 
     /// Whether another curve lies on the carrier.
     pub fn contains(&self, curve: &Curve, [lo, hi]: [f64; 2], near: f64) -> bool {
-        let carrier = Surface::Cylinder(self.carrier);
         let at = |k: usize| lo + (hi - lo) * ((k as f64 + 0.5) / PLACES as f64);
-        (0..PLACES).all(|k| carrier.distance(&curve.point(at(k))).is_within(near))
+        (0..PLACES).all(|k| self.carrier.distance(&curve.point(at(k))).is_within(near))
     }
 
     /// The parameters at which another curve intersects the carrier.
     pub fn passed_by(&self, curve: &Curve, range: [f64; 2], resolution: f64) -> Vec<f64> {
-        match cut(curve, range, &Surface::Cylinder(self.carrier), resolution) {
+        match cut(curve, range, &self.carrier, resolution) {
             Roots::Everywhere => Vec::new(),
             Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         }
@@ -90,7 +94,8 @@ impl Edgewise {
         resolution: f64,
         found: &mut impl FnMut(f64),
     ) {
-        let q = self.carrier.frame.coordinates(&p);
+        let frame = self.carrier.frame();
+        let q = frame.coordinates(&p);
         let size = q.x.hypot(q.y);
         // The image of the axis is not on the circle's image.
         if size.is_exactly(0.0) {
@@ -98,10 +103,9 @@ impl Edgewise {
         }
         let (cos, sin) = (q.x / size, q.y / size);
         // On the wall the image is that of a ruling.
-        let frame = &self.carrier.frame;
-        let radius = self.carrier.radius;
+        let [u, _] = self.carrier.parameters(&p);
         let ruling = Line {
-            origin: frame.point(cos * radius, sin * radius, 0.0),
+            origin: self.carrier.point(u, 0.0),
             direction: frame.z,
         };
         if line_intersections(curve, range, &ruling, resolution, &mut |t, _| found(t)) {

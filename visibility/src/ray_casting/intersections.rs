@@ -41,6 +41,17 @@ impl LineHits {
     }
 }
 
+impl LineHits {
+    /// Adds the intersections of the line q + t w with both nappes of a cone that lie on its own.
+    fn push_on_nappe(&mut self, both: &Self, q: &Vector3<f64>, w: &Vector3<f64>) {
+        for hit in both.as_slice() {
+            if (q.z + hit.at * w.z).reaches(0.0) {
+                self.push(hit.at, hit.touches);
+            }
+        }
+    }
+}
+
 impl Scene<'_> {
     /// The intersections of a line of sight with the surface of a face, without the root at the
     /// origin that `own` states.
@@ -72,7 +83,9 @@ impl Scene<'_> {
                 self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
             }
             // A line through the apex has a double root, whatever its direction.
-            Surface::Cone(_) if own == OriginIncidence::No && self.through_apex(&q, &w) => {
+            Surface::Cone(_) | Surface::EllipticCone(_)
+                if own == OriginIncidence::No && self.through_apex(&q, &w) =>
+            {
                 found.push(-q.dot(&w), true);
             }
             Surface::Cone(s) => {
@@ -84,11 +97,23 @@ impl Scene<'_> {
                 let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
                 let mut both = LineHits::default();
                 self.quadric([a, b, c], own, gradient, &mut both);
-                for hit in both.as_slice() {
-                    if (q.z + hit.at * w.z).reaches(0.0) {
-                        found.push(hit.at, hit.touches);
-                    }
-                }
+                found.push_on_nappe(&both, &q, &w);
+            }
+            Surface::EllipticCylinder(s) => {
+                let rho = (q.x / s.radii[0]).hypot(q.y / s.radii[1]);
+                let c = (rho - 1.0) * (rho + 1.0);
+                let [a, b] = [&w, &q].map(|v| s.gradient(v).dot(&w));
+                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+                self.quadric([a, b, c], own, gradient, &mut found);
+            }
+            Surface::EllipticCone(s) => {
+                let rho = (q.x / s.slopes[0]).hypot(q.y / s.slopes[1]);
+                let c = (rho - q.z) * (rho + q.z);
+                let [a, b] = [&w, &q].map(|v| s.gradient(v).dot(&w));
+                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+                let mut both = LineHits::default();
+                self.quadric([a, b, c], own, gradient, &mut both);
+                found.push_on_nappe(&both, &q, &w);
             }
             Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
         }

@@ -30,8 +30,10 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
             let own = locator.face(face);
             let hull = own.boxes().iter().fold(Aabb::EMPTY, |a, b| a.hull(b));
             match surface {
-                Surface::Cone(s) if own.place(&s.frame.origin) != PointLocation::Outside => {
-                    hull.hull(&Aabb::new(&s.frame.origin))
+                Surface::Cone(_) | Surface::EllipticCone(_)
+                    if own.place(&surface.frame().origin) != PointLocation::Outside =>
+                {
+                    hull.hull(&Aabb::new(&surface.frame().origin))
                 }
                 _ => hull,
             }

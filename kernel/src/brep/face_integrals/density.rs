@@ -39,7 +39,11 @@ impl<N: Float> Density<'_, N> {
     pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
         match &self.ground.surface {
             // At the apex u jumps, so there may be nothing in between.
-            Surface::Cone(c) if reaches(brep, coedges, &c.frame.origin) => self.ground.base,
+            cone @ (Surface::Cone(_) | Surface::EllipticCone(_))
+                if reaches(brep, coedges, &cone.frame().origin) =>
+            {
+                self.ground.base
+            }
             _ => amid_edges(brep, &self.ground, coedges),
         }
     }

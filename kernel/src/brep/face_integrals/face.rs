@@ -11,6 +11,7 @@ use crate::brep::locate::{FaceLocator, PointLocation};
 use crate::brep::surface_path::{DirectedArc, SurfacePath};
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::geometry::curve_plane::plane_roots;
+use crate::geometry::elliptic_surface::EllipticCylinder;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
 use crate::geometry::vector::{Length, rounded};
@@ -33,7 +34,11 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
     let coedges: Vec<CoedgeId> = brep.topology.coedges_of(face).collect();
     let surface = convenient(brep, brep.surface(face), &coedges, &amid.reference);
     let (base, middle) = match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => (N::ZERO, N::ZERO),
+        Surface::Plane(_)
+        | Surface::Cylinder(_)
+        | Surface::Cone(_)
+        | Surface::EllipticCylinder(_)
+        | Surface::EllipticCone(_) => (N::ZERO, N::ZERO),
         Surface::Sphere(_) => (-N::PI / N::TWO, N::ZERO),
         Surface::Torus(t) if t.is_ring() => (-N::PI, opposite_parallel(brep, t, &coedges)),
         Surface::Torus(t) => (-t.pole_angle(), N::ZERO),
@@ -52,9 +57,11 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
         defect: Cell::new(N::ZERO),
     };
     let moments = match &surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => {
-            boundary_sum(brep, face, &d, &|_| Vec::new())
-        }
+        Surface::Plane(_)
+        | Surface::Cylinder(_)
+        | Surface::Cone(_)
+        | Surface::EllipticCylinder(_)
+        | Surface::EllipticCone(_) => boundary_sum(brep, face, &d, &|_| Vec::new()),
         Surface::Sphere(s) => {
             let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
             let whole = d.between(base, N::PI / N::TWO);
@@ -103,11 +110,15 @@ fn convenient<N: Float>(
             let frame = next_to_reference(&s.frame, &[s.frame.z]);
             Surface::Cylinder(Cylinder { frame, ..s })
         }
+        Surface::EllipticCylinder(s) => {
+            let frame = next_to_reference(&s.frame, &[s.frame.z]);
+            Surface::EllipticCylinder(EllipticCylinder { frame, ..s })
+        }
         Surface::Sphere(s) => {
             let frame = clear_axis(brep, &s, coedges);
             Surface::Sphere(Sphere { frame, ..s })
         }
-        other @ (Surface::Cone(_) | Surface::Torus(_)) => other,
+        other @ (Surface::Cone(_) | Surface::Torus(_) | Surface::EllipticCone(_)) => other,
     }
 }
 

@@ -4,6 +4,7 @@
 use super::Moments;
 use super::strip::strip;
 use crate::geometry::curve::Curve;
+use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::rounded;
 use crate::number::float::Float;
@@ -84,6 +85,11 @@ impl<N: Float> Ground<N> {
         let [u, mut v] = self.parameters(&p);
         let rate = match &self.surface {
             Surface::Plane(_) => d.x,
+            Surface::EllipticCylinder(EllipticCylinder { radii: [a, b], .. })
+            | Surface::EllipticCone(EllipticCone { slopes: [a, b], .. }) => {
+                let turn = (q.x * d.y - q.y * d.x) / (*a * *b);
+                turn / ((q.x / *a).square() + (q.y / *b).square())
+            }
             _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
         };
         if let Surface::Torus(_) = self.surface {

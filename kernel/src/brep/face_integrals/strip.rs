@@ -5,12 +5,13 @@
 //! half the length of the strip. Every integral is a product with d, or with sin d, so nothing
 //! cancels in a thin strip.
 //!
-//! - Plane, cylinder, cone: P = p + q v, J = j + k v, and h does not depend on v.
+//! - Plane, cylinder, cone, elliptic or not: P = p + q v, J = j + k v, and h does not depend on v.
 //! - Sphere, torus: P, h and J are a + b cos v + c sin v.
 
 use super::Moments;
 use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::{Trig1, product};
+use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use nalgebra::{Point3, Vector3};
 
@@ -47,6 +48,21 @@ pub(super) fn strip<N: Float>(
             let height = [r, c.dot(&e) + major, c.dot(&z)];
             let jacobian = [r * major, r * r, N::ZERO];
             round([c + e * major, e * r, z * r], height, jacobian, m, d)
+        }
+        Surface::EllipticCylinder(s) => {
+            let [a, b] = s.radii;
+            let p = c + f.x * (a * cos) + f.y * (b * sin);
+            let across = f.x * (b * cos) + f.y * (a * sin);
+            let size = across.length();
+            straight([p, z], [size, N::ZERO], p.dot(&across) / size, m, d)
+        }
+        Surface::EllipticCone(s) => {
+            let [a, b] = s.slopes;
+            let out = f.x * (a * cos) + f.y * (b * sin) + z;
+            let across = f.x * (b * cos) + f.y * (a * sin) - z * (a * b);
+            let size = across.length();
+            let jacobian = [N::ZERO, size];
+            straight([c, out], jacobian, c.dot(&across) / size, m, d)
         }
     }
 }
@@ -139,7 +155,7 @@ mod tests {
         };
         let sheets = [inner, outer, horn].map(Surface::Torus);
         let surfaces = surfaces.into_iter().chain(sheets);
-        for (surface, u) in surfaces.zip([0.3, 1.1, 2.0, 4.0, 5.5, 0.2, 3.3, 5.9]) {
+        for (surface, u) in surfaces.zip([0.3, 1.1, 2.0, 4.0, 5.5, 0.7, 2.5, 0.2, 3.3, 5.9]) {
             let surface = &surface;
             let density = |v: f64| {
                 let step = 1e-5;

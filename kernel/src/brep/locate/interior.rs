@@ -92,7 +92,10 @@ impl<N: Float> FaceLocator<'_, N> {
                 let target = p + towards * s.radius;
                 walks.extend(SurfacePath::great_circle(&s.frame.origin, p, &target));
             }
-            Surface::Cylinder(_) | Surface::Cone(_) => {
+            Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => {
                 walks.extend(parallel());
                 let down = SurfacePath::ruling_through(self.surface, p, Sense::Along);
                 walks.extend(down);

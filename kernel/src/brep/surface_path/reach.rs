@@ -103,7 +103,7 @@ impl Reach {
                 };
                 (Some(path), extent)
             }
-            Track::Circle(..) => (None, Aabb::ALL),
+            Track::Circle(..) | Track::Ellipse(..) => (None, Aabb::ALL),
         };
         Self {
             plane: Above::new(start, normal),

@@ -175,7 +175,10 @@ fn equal_tubes<N: Float>(
     let radii = match other {
         Surface::Sphere(_) | Surface::Cylinder(_) => PairMeasure::SizeOfTube,
         Surface::Torus(_) => PairMeasure::Tubes,
-        Surface::Plane(_) | Surface::Cone(_) => return None,
+        Surface::Plane(_)
+        | Surface::Cone(_)
+        | Surface::EllipticCylinder(_)
+        | Surface::EllipticCone(_) => return None,
     };
     if !predicates.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
         return None;

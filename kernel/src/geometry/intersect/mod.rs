@@ -4,6 +4,7 @@
 //! over the part's extent and decided by the [`Predicates`]. The constructions use the decisions.
 
 mod contact;
+mod elliptic;
 mod plane;
 mod quadric;
 mod rulings;
@@ -11,8 +12,9 @@ mod sphere;
 mod torus;
 
 use super::curve::Curve;
+use super::frame::Frame;
 use super::region_of_interest::RegionOfInterest;
-use super::surface::{Cone, Surface, SurfaceKind, Torus};
+use super::surface::{Surface, SurfaceKind, Torus};
 use super::surface_pair::{Carrier, PairMeasure, SurfacePair};
 use super::trace::BranchPosition;
 use super::unresolved::Unresolved;
@@ -177,6 +179,16 @@ pub fn intersect<N: Float>(
         (S::Cylinder(c), S::Plane(p)) => plane::plane_cylinder(p, c, &turned, predicates),
         (S::Plane(p), S::Cone(c)) => plane::plane_cone(p, c, &pair, predicates),
         (S::Cone(c), S::Plane(p)) => plane::plane_cone(p, c, &turned, predicates),
+        (S::Plane(p), S::EllipticCylinder(c)) => {
+            elliptic::plane_elliptic_cylinder(p, c, &pair, predicates)
+        }
+        (S::EllipticCylinder(c), S::Plane(p)) => {
+            elliptic::plane_elliptic_cylinder(p, c, &turned, predicates)
+        }
+        (S::Plane(p), S::EllipticCone(c)) => elliptic::plane_elliptic_cone(p, c, &pair, predicates),
+        (S::EllipticCone(c), S::Plane(p)) => {
+            elliptic::plane_elliptic_cone(p, c, &turned, predicates)
+        }
         (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, predicates),
         (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, predicates)?,
         (S::Torus(t), _) => torus::torus_with(t, &pair, predicates)?,
@@ -205,7 +217,8 @@ pub fn coincidence<N: Float>(
 ) -> Option<Sense> {
     let kinds = [a, b].map(|c| c.surface.kind());
     let against = a.surface.frame().z.dot(&b.surface.frame().z) < N::ZERO;
-    if kinds[0] != kinds[1] || (against && kinds[0] == SurfaceKind::Cone) {
+    let is_cone = matches!(kinds[0], SurfaceKind::Cone | SurfaceKind::EllipticCone);
+    if kinds[0] != kinds[1] || (against && is_cone) {
         return None;
     }
     let pair = SurfacePair::new(a, b, extent);
@@ -270,7 +283,10 @@ fn parts_on<N: Float>(
     resolution: N,
 ) -> Vec<[N; 2]> {
     match surface {
-        Surface::Cone(cone) => positive_parts(curve, range, &AboveApex { curve, cone }, resolution),
+        Surface::Cone(_) | Surface::EllipticCone(_) => {
+            let frame = surface.frame();
+            positive_parts(curve, range, &AboveApex { curve, frame }, resolution)
+        }
         Surface::Torus(torus) if !torus.is_ring() => {
             positive_parts(curve, range, &OnSheet { curve, torus }, resolution)
         }
@@ -281,7 +297,8 @@ fn parts_on<N: Float>(
 /// The height of a curve above a cone's apex, along the axis.
 struct AboveApex<'a, N: Float = f64> {
     curve: &'a Curve<N>,
-    cone: &'a Cone<N>,
+    /// The cone's.
+    frame: &'a Frame<N>,
 }
 
 /// The distance of a curve from the poles of a torus, positive on its sheet.
@@ -313,21 +330,21 @@ impl<N: Float> Function<N> for OnSheet<'_, N> {
 
 impl<N: Float> Function<N> for AboveApex<'_, N> {
     fn over(&self, t: Interval<N>) -> Jet<Interval<N>> {
-        self.cone.frame.local(self.curve.jet_over(t))[2]
+        self.frame.local(self.curve.jet_over(t))[2]
     }
 
     fn reach(&self, t: Interval<N>) -> Interval<N> {
         match self.curve.box_over(t) {
-            Some(p) => self.cone.frame.local(p)[2],
+            Some(p) => self.frame.local(p)[2],
             None => Interval::ENTIRE,
         }
     }
 
     fn at(&self, t: N) -> Jet<N> {
-        self.cone.frame.local(self.curve.jet(t))[2]
+        self.frame.local(self.curve.jet(t))[2]
     }
 
     fn value(&self, t: N) -> N {
-        self.cone.frame.local(self.curve.point(t).into())[2]
+        self.frame.local(self.curve.point(t).into())[2]
     }
 }

@@ -2,19 +2,16 @@
 //! carry the curve, and the cases that need no rulings.
 
 use super::rulings::Rulings;
-use super::{Branch, IntersectionError, RegionOfInterest, SurfaceIntersection, place};
+use super::{IntersectionError, SurfaceIntersection, elliptic, place};
 use crate::geometry::curve::{Curve, Line};
+use crate::geometry::elliptic_surface::EllipticCone;
 use crate::geometry::frame::Frame;
 use crate::geometry::quadric_curve::Ruled;
 use crate::geometry::surface::{Cone, Cylinder, Surface};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
-use crate::geometry::trace::BranchPosition;
 use crate::geometry::vector::Length;
-use crate::number::float::{Analytic, Float};
-use crate::number::interval::Interval;
-use crate::number::jet::Jet;
+use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
-use crate::number::roots::{RootKind, Roots, isolate};
 use nalgebra::Vector3;
 
 pub(super) fn quadric_quadric<N: Float>(
@@ -23,19 +20,24 @@ pub(super) fn quadric_quadric<N: Float>(
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     use Surface as S;
     let turned = pair.turned();
-    match (pair.a.surface, pair.b.surface) {
-        (S::Cylinder(c), S::Cylinder(d)) => {
-            let at = place(&c.frame.origin);
-            if predicates.coincide("axes side by side", pair.how(PairMeasure::Drift), at) {
-                return Ok(parallel_cylinders(c, d, pair, predicates));
+    match (Ruled::new(pair.a.surface), Ruled::new(pair.b.surface)) {
+        (Some(base), Some(other)) if !base.is_cone() && !other.is_cone() => {
+            let at = place(&base.frame().origin);
+            if !predicates.coincide("axes side by side", pair.how(PairMeasure::Drift), at) {
+                return over_rulings(pair, predicates);
             }
-            over_rulings(pair, predicates)
+            Ok(match (pair.a.surface, pair.b.surface) {
+                (S::Cylinder(c), S::Cylinder(d)) => parallel_cylinders(c, d, pair, predicates),
+                (_, other) => elliptic::parallel_cylinders(&base, other, pair.extent, predicates),
+            })
         }
-        (S::Cylinder(_), _) => over_rulings(pair, predicates),
-        (_, S::Cylinder(_)) => over_rulings(&turned, predicates),
-        (S::Cone(c), S::Cone(_)) => cones(c, pair, predicates),
-        (S::Cone(_), _) => over_rulings(pair, predicates),
-        (_, S::Cone(_)) => over_rulings(&turned, predicates),
+        (Some(base), Some(other)) if base.is_cone() && other.is_cone() => {
+            cones(&base, pair, predicates)
+        }
+        (Some(base), _) if !base.is_cone() => over_rulings(pair, predicates),
+        (_, Some(other)) if !other.is_cone() => over_rulings(&turned, predicates),
+        (Some(_), _) => over_rulings(pair, predicates),
+        (_, Some(_)) => over_rulings(&turned, predicates),
         _ => Ok(SurfaceIntersection::nothing()),
     }
 }
@@ -87,82 +89,25 @@ fn parallel_cylinders<N: Float>(
 }
 
 fn cones<N: Float>(
-    c: &Cone<N>,
+    base: &Ruled<N>,
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let at = place(&c.frame.origin);
+    let at = place(&base.frame().origin);
     if predicates.classify_at_point("apex on apex", pair.how(PairMeasure::Between), at) == Side::On
     {
-        return Ok(common_apex(c, pair.b.surface, pair.extent, predicates));
+        return Ok(elliptic::common_apex(
+            base,
+            pair.b.surface,
+            pair.extent,
+            predicates,
+        ));
     }
     let turned = pair.turned();
     if holds_apex(&turned, predicates) && !holds_apex(pair, predicates) {
         return over_rulings(&turned, predicates);
     }
     over_rulings(pair, predicates)
-}
-
-/// Two cones with a common apex intersect in common rulings.
-fn common_apex<N: Float>(
-    c: &Cone<N>,
-    other: &Surface<N>,
-    extent: &RegionOfInterest<N>,
-    predicates: &Predicates,
-) -> SurfaceIntersection<N> {
-    let mut meeting = SurfaceIntersection::touch(c.frame.origin);
-    let m = c.sin / c.cos;
-    // The distance from the other cone along each ruling, at the extent's radius from the apex.
-    let along = |u: Jet<Interval<N>>| {
-        let (s, k) = u.sin_cos();
-        let r = extent.radius;
-        let p = c
-            .frame
-            .world_of([k.scale(m * r), s.scale(m * r), Jet::constant(r)]);
-        other.level(p)
-    };
-    let breaks: Vec<N> = (0..=8)
-        .map(|i| N::from_f64(0.1) + N::TAU * N::whole(i) / N::from_f64(8.0))
-        .collect();
-    let Roots::At { roots, .. } = isolate(
-        &|t| along(Jet::variable(t)),
-        &breaks,
-        predicates.resolution(),
-    ) else {
-        return meeting;
-    };
-    let mut angles: Vec<(N, bool)> = roots
-        .iter()
-        .map(|r| (r.t, r.contact != RootKind::Simple))
-        .collect();
-    if let (Some(&(a, _)), Some(&(b, _))) = (angles.first(), angles.last())
-        && angles.len() > 1
-        && (a + N::TAU - b).abs() < N::ROUNDING * N::TAU
-    {
-        angles.pop();
-    }
-    for (u, tangent) in angles {
-        let local = Vector3::new(c.sin * u.cos(), c.sin * u.sin(), c.cos);
-        let curve = Curve::Line(Line {
-            origin: c.frame.origin,
-            direction: c.frame.vector(&local),
-        });
-        if let Some([_, end]) = curve.range_within(&extent.centre, extent.radius)
-            && end > N::ZERO
-        {
-            meeting.nodes[0].on.push(BranchPosition {
-                branch: meeting.branches.len(),
-                t: N::ZERO,
-            });
-            meeting.branches.push(Branch {
-                curve,
-                range: [N::ZERO, end],
-                closed: false,
-                tangent,
-            });
-        }
-    }
-    meeting
 }
 
 /// The curve over the rulings of the first surface. If the curve has a cusp over these, at the apex
@@ -182,13 +127,11 @@ fn over_rulings<N: Float>(
 
 /// Whether the second surface is a cone whose apex lies on the first.
 fn holds_apex<N: Float>(pair: &SurfacePair<'_, N>, predicates: &Predicates) -> bool {
-    let Surface::Cone(cone) = pair.b.surface else {
-        return false;
+    let apex = match pair.b.surface {
+        Surface::Cone(_) | Surface::EllipticCone(_) => pair.b.surface.frame().origin,
+        _ => return false,
     };
-    let (away, at) = (
-        pair.how(PairMeasure::PointOnQuadric),
-        place(&cone.frame.origin),
-    );
+    let (away, at) = (pair.how(PairMeasure::PointOnQuadric), place(&apex));
     predicates.classify_at_point("apex on quadric", away, at) == Side::On
 }
 
@@ -202,31 +145,36 @@ fn sine_of_sum<N: Float>(cone: &Cone<N>, direction: &Vector3<N>) -> N {
     cone.sin * cos + cone.cos * sin
 }
 
+/// The sine of the angle between a direction and the closest ruling of an elliptic cone, to first
+/// order.
+fn sine_from_cone<N: Float>(cone: &EllipticCone<N>, direction: &Vector3<N>) -> N {
+    let d = cone.frame.components(direction);
+    let gradient = cone.gradient(&d);
+    gradient.dot(&d) / (N::TWO * gradient.length())
+}
+
 fn over_first<N: Float>(
     pair: &SurfacePair<'_, N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let base = match pair.a.surface {
-        Surface::Cylinder(c) => Ruled::Cylinder(*c),
-        Surface::Cone(c) => Ruled::Cone(*c),
-        Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => {
-            return Ok(SurfaceIntersection::nothing());
-        }
+    let Some(base) = Ruled::new(pair.a.surface) else {
+        return Ok(SurfaceIntersection::nothing());
     };
     let rulings = Rulings::new(base, pair);
-    let is_single = match base {
+    let is_single = if base.is_cone() {
+        holds_apex(&pair.turned(), predicates)
+    } else {
         // The rulings are a direction of the other surface: a cone with a ruling parallel to them.
         // Two cylinders that reach this place have axes that are not parallel, however small the
         // angle.
-        Ruled::Cylinder(c) => match pair.b.surface {
-            Surface::Cone(cone) => {
-                let sine = rulings.lead / sine_of_sum(cone, &c.frame.z);
-                predicates.within(sine * pair.extent.radius)
-            }
-            Surface::Cylinder(_) => false,
-            _ => predicates.within(rulings.lead * pair.extent.radius),
-        },
-        Ruled::Cone(_) => holds_apex(&pair.turned(), predicates),
+        let direction = base.frame().z;
+        let sine = match pair.b.surface {
+            Surface::Cone(cone) => Some(rulings.lead / sine_of_sum(cone, &direction)),
+            Surface::EllipticCone(cone) => Some(sine_from_cone(cone, &direction)),
+            Surface::Sphere(_) => Some(rulings.lead),
+            _ => None,
+        };
+        sine.is_some_and(|sine| predicates.within(sine * pair.extent.radius))
     };
     if is_single {
         rulings.single(predicates)

@@ -87,6 +87,11 @@ fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N 
             let out = c.major.abs().max(N::HALF * c.reach());
             N::from_f64(8.0) * c.major.abs() * out * c.minor
         }
+        Surface::EllipticCylinder(c) => N::TWO * c.radii[0].min(c.radii[1]),
+        Surface::EllipticCone(c) => {
+            let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
+            N::TWO * c.sine_squared().sqrt() * away
+        }
     };
     s.polynomial(p) / slope
 }
@@ -184,9 +189,12 @@ fn traced<N: Float>(
 /// Whether the surface is one of two on which its implicit polynomial vanishes.
 fn has_other_sheet<N: Float>(surface: &Surface<N>) -> bool {
     match surface {
-        Surface::Cone(_) => true,
+        Surface::Cone(_) | Surface::EllipticCone(_) => true,
         Surface::Torus(torus) => !torus.is_ring(),
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::Sphere(_) => false,
+        Surface::Plane(_)
+        | Surface::Cylinder(_)
+        | Surface::Sphere(_)
+        | Surface::EllipticCylinder(_) => false,
     }
 }
 
@@ -251,6 +259,7 @@ fn coaxial<N: Float>(
         Surface::Sphere(_) => {
             predicates.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at)
         }
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => false,
         _ => same_line(pair, at, predicates),
     };
     if !is_coaxial {
@@ -276,6 +285,7 @@ fn coaxial<N: Float>(
         }
         Surface::Sphere(s) => profile.circle(&Vector2::new(N::ZERO, up), s.radius),
         Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => return None,
     };
     let mut meeting = SurfaceIntersection::nothing();
     for ProfilePoint { at: p, tangent } in points {

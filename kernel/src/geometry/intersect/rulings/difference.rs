@@ -33,6 +33,9 @@ impl<N: Float> Difference<N> {
     /// times a length.
     pub fn new(pair: &SurfacePair<'_, N>) -> Self {
         let surfaces = [pair.a.surface, pair.b.surface];
+        if surfaces.iter().any(|s| s.is_elliptic()) {
+            return Self::of_other(surfaces);
+        }
         let [a, b] = [pair.a, pair.b].map(|c| c.numbers());
         let parts = Parts::new(surfaces, &a, &b);
         let lean = Vector3::from(parts.lean).length();
@@ -43,6 +46,33 @@ impl<N: Float> Difference<N> {
         Parts::new(surfaces, &a, &b)
             .map(RationalInterval::middle)
             .difference(surfaces)
+    }
+}
+
+impl<N: Float> Difference<N> {
+    /// The other's equation in the base's frame, from the numbers of both.
+    fn of_other([base, other]: [&Surface<N>; 2]) -> Self {
+        let (f, g) = (base.frame(), other.frame());
+        let (squares, constant) = match other {
+            Surface::EllipticCylinder(s) => s.equation(),
+            Surface::EllipticCone(s) => s.equation(),
+            Surface::Cylinder(s) => ([N::ONE, N::ONE, N::ZERO], s.radius * s.radius),
+            Surface::Cone(s) => {
+                let across = s.cos * s.cos;
+                ([across, across, -s.sin * s.sin], N::ZERO)
+            }
+            Surface::Sphere(s) => ([N::ONE; 3], s.radius * s.radius),
+            Surface::Plane(_) | Surface::Torus(_) => ([N::ZERO; 3], N::ZERO),
+        };
+        let axes = [f.x, f.y, f.z].map(|axis| g.components(&axis));
+        let away = g.coordinates(&f.origin);
+        let form =
+            |u: &Vector3<N>, v: &Vector3<N>| (0..3).map(|i| squares[i] * u[i] * v[i]).sum::<N>();
+        Self {
+            a: Matrix3::from_fn(|i, j| form(&axes[i], &axes[j])),
+            b: Vector3::from_fn(|i, _| form(&axes[i], &away)),
+            c: form(&away, &away) - constant,
+        }
     }
 }
 

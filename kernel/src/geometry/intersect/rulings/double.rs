@@ -8,7 +8,7 @@
 use super::{Rulings, apart, sampled_rulings};
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
-use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
+use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Sweep};
 use crate::geometry::trace::BranchPosition;
 use crate::geometry::trigonometric::{Trig1, between, divide, trig1, zeros_of};
 use crate::geometry::vector::Length;
@@ -254,7 +254,7 @@ impl<N: Float> Rulings<'_, N> {
         let curve = Curve::Quartic(Box::new(q));
         let Some(period) = curve.period() else { return };
         let mut ranges = vec![[N::ZERO, period]];
-        if let Ruled::Cone(_) = self.base {
+        if self.base.is_cone() {
             ranges = self.nappe_ranges(&q, period);
         }
         for r in ranges {

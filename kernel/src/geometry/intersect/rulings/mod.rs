@@ -9,6 +9,7 @@ mod double;
 mod single;
 
 use self::difference::Difference;
+use super::elliptic::{plane_elliptic_cone, plane_elliptic_cylinder};
 use super::plane::{plane_cone, plane_cylinder};
 use super::{Branch, Node, RegionOfInterest, SurfaceIntersection, parts_on, place};
 use crate::geometry::curve::Curve;
@@ -34,6 +35,11 @@ pub(super) fn apart<N: Float>(surface: &Surface<N>, p: &Point3<N>) -> N {
             let q = c.frame.coordinates(p);
             (q.x.hypot(q.y) * c.cos - q.z.abs() * c.sin).abs()
         }
+        Surface::EllipticCone(c) => {
+            let q = c.frame.coordinates(p);
+            let upright = c.frame.point(q.x, q.y, q.z.abs());
+            surface.distance(&upright).abs()
+        }
         _ => surface.distance(p).abs(),
     }
 }
@@ -51,46 +57,29 @@ pub(super) struct Rulings<'a, N: Float = f64> {
     extent: &'a RegionOfInterest<N>,
 }
 
-fn surface_of<N: Float>(base: &Ruled<N>) -> Surface<N> {
-    match base {
-        Ruled::Cylinder(c) => Surface::Cylinder(*c),
-        Ruled::Cone(c) => Surface::Cone(*c),
-    }
-}
-
 impl<'a, N: Float> Rulings<'a, N> {
     /// The quadric over the rulings of the pair's first surface.
     pub(super) fn new(base: Ruled<N>, pair: &SurfacePair<'a, N>) -> Self {
         let q = Difference::new(pair);
         let (a, b) = (&q.a, &q.b);
-        // The ruling's point is m (cos, sin, 0) + ..., with m the radius or the slope.
-        let (lead, linear, constant) = match &base {
-            Ruled::Cylinder(s) => {
-                let r = s.radius;
-                let linear = [b.z, r * a[(0, 2)], r * a[(1, 2)]];
-                let half = N::HALF * r * r;
-                let constant = [
-                    q.c + half * (a[(0, 0)] + a[(1, 1)]),
-                    N::TWO * r * b.x,
-                    N::TWO * r * b.y,
-                    half * (a[(0, 0)] - a[(1, 1)]),
-                    N::TWO * half * a[(0, 1)],
-                ];
-                (a[(2, 2)], linear, constant)
-            }
-            Ruled::Cone(s) => {
-                let m = s.sin / s.cos;
-                let linear = [b.z, m * b.x, m * b.y];
-                let half = N::HALF * m * m;
-                let constant = [
-                    a[(2, 2)] + half * (a[(0, 0)] + a[(1, 1)]),
-                    N::TWO * m * a[(0, 2)],
-                    N::TWO * m * a[(1, 2)],
-                    half * (a[(0, 0)] - a[(1, 1)]),
-                    N::TWO * half * a[(0, 1)],
-                ];
-                (q.c, linear, constant)
-            }
+        // The ruling's point is (m cos, n sin, 0) + ..., with m and n the radii or the slopes.
+        let [m, n] = base.radii();
+        let [along, across] = [m * m * a[(0, 0)], n * n * a[(1, 1)]];
+        let angular = |mean: N, x: N, y: N| {
+            [
+                mean + N::HALF * (along + across),
+                N::TWO * m * x,
+                N::TWO * n * y,
+                N::HALF * (along - across),
+                m * n * a[(0, 1)],
+            ]
+        };
+        let (lead, linear, constant) = if base.is_cone() {
+            let constant = angular(a[(2, 2)], a[(0, 2)], a[(1, 2)]);
+            (q.c, [b.z, m * b.x, n * b.y], constant)
+        } else {
+            let linear = [b.z, m * a[(0, 2)], n * a[(1, 2)]];
+            (a[(2, 2)], linear, angular(q.c, b.x, b.y))
         };
         let square = product(&linear, &linear);
         let radicand = std::array::from_fn(|i| square[i] - lead * constant[i]);
@@ -110,18 +99,17 @@ impl<'a, N: Float> Rulings<'a, N> {
 
     /// The point on the ruling u at height w, in the base's frame.
     fn local(&self, u: N, w: N) -> Vector3<N> {
-        match &self.base {
-            Ruled::Cylinder(s) => Vector3::new(s.radius * u.cos(), s.radius * u.sin(), w),
-            Ruled::Cone(s) => {
-                let rho = s.sin / s.cos / w;
-                Vector3::new(rho * u.cos(), rho * u.sin(), N::ONE / w)
-            }
+        let [m, n] = self.base.radii();
+        let (sin, cos) = u.sin_cos();
+        match self.base.is_cone() {
+            true => Vector3::new(m / w * cos, n / w * sin, N::ONE / w),
+            false => Vector3::new(m * cos, n * sin, w),
         }
     }
 
     fn world(&self, u: N, w: N) -> Point3<N> {
         let p = self.local(u, w);
-        surface_of(&self.base).frame().point(p.x, p.y, p.z)
+        self.base.frame().point(p.x, p.y, p.z)
     }
 
     /// The height of the ruling's point that is closest to the other surface.
@@ -135,23 +123,17 @@ impl<'a, N: Float> Rulings<'a, N> {
 
     /// Whether a height lies on the base and in the extent.
     fn is_on_base(&self, w: N) -> bool {
-        match &self.base {
-            Ruled::Cylinder(_) => true,
-            Ruled::Cone(_) => w > N::ZERO && N::ONE / w <= self.reach(),
-        }
+        !self.base.is_cone() || (w > N::ZERO && N::ONE / w <= self.reach())
     }
 
     /// Whether a height lies on the base and in an extent twice as large.
     fn is_about_base(&self, w: N) -> bool {
-        match &self.base {
-            Ruled::Cylinder(_) => true,
-            Ruled::Cone(_) => w > N::ZERO && N::ONE / w <= N::TWO * self.reach(),
-        }
+        !self.base.is_cone() || (w > N::ZERO && N::ONE / w <= N::TWO * self.reach())
     }
 
     /// The greatest absolute height in the extent.
     fn reach(&self) -> N {
-        let f = *surface_of(&self.base).frame();
+        let f = self.base.frame();
         (f.origin - self.extent.centre).dot(&f.z).abs() + self.extent.radius
     }
 
@@ -184,17 +166,12 @@ impl<'a, N: Float> Rulings<'a, N> {
         predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
-        let surface = surface_of(&self.base);
+        let surface = self.base.surface();
         let frame = surface.frame();
-        let (normal, offset) = match &self.base {
-            Ruled::Cylinder(s) => (
-                Vector3::new(-w[1] / s.radius, -w[2] / s.radius, N::ONE),
-                w[0],
-            ),
-            Ruled::Cone(s) => {
-                let m = s.sin / s.cos;
-                (Vector3::new(w[1] / m, w[2] / m, w[0]), N::ONE)
-            }
+        let [m, n] = self.base.radii();
+        let (normal, offset) = match self.base.is_cone() {
+            true => (Vector3::new(w[1] / m, w[2] / n, w[0]), N::ONE),
+            false => (Vector3::new(-w[1] / m, -w[2] / n, N::ONE), w[0]),
         };
         let size = normal.length();
         if size * self.reach() * self.reach() < offset.abs() * predicates.resolution() {
@@ -211,6 +188,8 @@ impl<'a, N: Float> Rulings<'a, N> {
         let part = match &self.base {
             Ruled::Cylinder(s) => plane_cylinder(&plane, s, &pair, predicates),
             Ruled::Cone(s) => plane_cone(&plane, s, &pair, predicates),
+            Ruled::EllipticCylinder(s) => plane_elliptic_cylinder(&plane, s, &pair, predicates),
+            Ruled::EllipticCone(s) => plane_elliptic_cone(&plane, s, &pair, predicates),
         };
         for branch in part.branches {
             for range in self.on_other_nappe(&branch.curve, branch.range, predicates) {
@@ -245,22 +224,19 @@ impl<'a, N: Float> Rulings<'a, N> {
                 worst = worst.max(apart(self.other, &self.world(u, w)));
             }
         }
-        let o = surface_of(&self.base).frame().origin;
+        let o = self.base.frame().origin;
         tested && predicates.coincide("quadrics meeting in conics", worst, place(&o))
     }
 
     /// Adds the apexes through which branches pass; they are singular points.
     fn add_apexes(&self, predicates: &Predicates, meeting: &mut SurfaceIntersection<N>) {
-        let surface = surface_of(&self.base);
+        let surface = self.base.surface();
         for (s, o) in [(&surface, self.other), (self.other, &surface)] {
-            if let Surface::Cone(c) = s
-                && predicates.within(o.distance(&c.frame.origin))
-            {
-                meeting.nodes.push(Node {
-                    point: c.frame.origin,
-                    on: Vec::new(),
-                });
-            }
+            let common = s.apexes().filter(|p| predicates.within(o.distance(p)));
+            meeting.nodes.extend(common.map(|point| Node {
+                point,
+                on: Vec::new(),
+            }));
         }
     }
 }

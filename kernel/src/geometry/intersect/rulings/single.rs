@@ -1,7 +1,7 @@
 //! The case of one intersection on each ruling: the rulings are a direction of the other quadric,
 //! or pass through its apex.
 
-use super::{Rulings, apart, surface_of};
+use super::{Rulings, apart};
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
 use crate::geometry::quadric_curve::{Height, QuadricCurve, Ruled, Sweep};
@@ -83,42 +83,42 @@ impl<N: Float> Rulings<'_, N> {
 
     /// The ruling that lies on both surfaces for k = 0: a common zero of B and C.
     fn shared_ruling(&self, predicates: &Predicates) -> Option<N> {
-        if let Ruled::Cylinder(_) = self.base {
-            let Surface::Cone(c) = self.other else {
-                return None;
-            };
-            let f = surface_of(&self.base);
-            if !predicates.within(f.distance(&c.frame.origin)) {
-                return None;
-            }
-            let q = f.frame().coordinates(&c.frame.origin);
-            return Some(q.y.atan2(q.x));
-        }
-        let Surface::Cone(c) = self.other else {
-            return None;
+        let surface = self.base.surface();
+        let apex = match self.other {
+            Surface::Cone(_) | Surface::EllipticCone(_) => self.other.frame().origin,
+            _ => return None,
         };
-        let q = surface_of(&self.base).frame().coordinates(&c.frame.origin);
-        let w = N::ONE / q.z;
-        let u = q.y.atan2(q.x);
-        let u = if q.z < N::ZERO { u + N::PI } else { u };
-        let on = predicates.within(apart(&surface_of(&self.base), &c.frame.origin));
-        (w.is_finite() && on).then_some(u)
+        if !self.base.is_cone() {
+            let is_on = predicates.within(surface.distance(&apex));
+            return is_on.then(|| self.base.angle(&apex));
+        }
+        let up = surface.frame().coordinates(&apex).z;
+        let u = self.base.angle(&apex);
+        let u = if up < N::ZERO { u + N::PI } else { u };
+        let is_on = predicates.within(apart(&surface, &apex));
+        ((N::ONE / up).is_finite() && is_on).then_some(u)
     }
 
     /// Whether the surfaces are tangent along all of the common ruling u0.
     fn touches_along(&self, u0: N, predicates: &Predicates) -> bool {
-        let surface = surface_of(&self.base);
-        let Surface::Cone(cone) = self.other else {
-            return false;
-        };
+        let surface = self.base.surface();
         let p = self.world(u0, N::ONE);
-        let along = match &self.base {
-            Ruled::Cylinder(c) => c.frame.z,
-            Ruled::Cone(c) => (p - c.frame.origin).unit(),
+        let along = match self.base.is_cone() {
+            true => (p - surface.frame().origin).unit(),
+            false => surface.frame().z,
         };
-        // The vector perpendicular to the ruling in the plane of the ruling and the axis.
-        let axis = cone.frame.z;
-        let normal = (axis - along * axis.dot(&along)).unit();
+        let normal = match self.other {
+            Surface::Cone(cone) => {
+                // The vector perpendicular to the ruling in the plane of the ruling and the axis.
+                let axis = cone.frame.z;
+                (axis - along * axis.dot(&along)).unit()
+            }
+            Surface::EllipticCone(cone) => {
+                let upward = along * along.dot(&cone.frame.z).signum();
+                self.other.normal(&(cone.frame.origin + upward))
+            }
+            _ => return false,
+        };
         let drift = surface.normal(&p).cross(&normal).length() * self.extent.radius;
         predicates.coincide("tangent along a ruling", drift, place(&p))
     }
@@ -139,9 +139,10 @@ impl<N: Float> Rulings<'_, N> {
     fn bounded_ranges(&self, q: &QuadricCurve<N>, shared: Option<N>, reach: N) -> Vec<[N; 2]> {
         // The limits |w| = reach, w = 1/reach and the poles, as signs of N - x D with w = N/D.
         let quotient = |u: N| q.height_at(u);
-        let inside = |u: N| match &self.base {
-            Ruled::Cylinder(_) => quotient(u).abs() <= reach,
-            Ruled::Cone(_) => quotient(u) * reach >= N::ONE,
+        let is_cone = self.base.is_cone();
+        let inside = |u: N| match is_cone {
+            false => quotient(u).abs() <= reach,
+            true => quotient(u) * reach >= N::ONE,
         };
         let bound = |x: N| -> Trig2<N> {
             let mut k = self.constant;
@@ -150,9 +151,9 @@ impl<N: Float> Rulings<'_, N> {
             }
             k
         };
-        let limits = match &self.base {
-            Ruled::Cylinder(_) => vec![bound(reach), bound(-reach)],
-            Ruled::Cone(_) => {
+        let limits = match is_cone {
+            false => vec![bound(reach), bound(-reach)],
+            true => {
                 vec![
                     bound(N::ONE / reach),
                     [
@@ -205,23 +206,28 @@ impl<N: Float> Rulings<'_, N> {
         predicates: &Predicates,
         meeting: &mut SurfaceIntersection<N>,
     ) {
-        let surface = surface_of(&self.base);
+        let surface = self.base.surface();
         let frame = surface.frame();
+        let [m, n] = self.base.radii();
+        let (x, y) = (m * u0.cos(), n * u0.sin());
         let (origin, direction) = match &self.base {
-            Ruled::Cylinder(s) => (
-                frame.point(s.radius * u0.cos(), s.radius * u0.sin(), N::ZERO),
-                frame.z,
-            ),
+            Ruled::Cylinder(_) | Ruled::EllipticCylinder(_) => {
+                (frame.point(x, y, N::ZERO), frame.z)
+            }
             Ruled::Cone(s) => {
                 let local = Vector3::new(s.sin * u0.cos(), s.sin * u0.sin(), s.cos);
                 (frame.origin, frame.vector(&local))
+            }
+            Ruled::EllipticCone(_) => {
+                let local = Vector3::new(x, y, N::ONE);
+                (frame.origin, frame.vector(&local.unit()))
             }
         };
         let curve = Curve::Line(Line { origin, direction });
         let Some([lo, hi]) = curve.range_within(&self.extent.centre, self.extent.radius) else {
             return;
         };
-        let lo = if matches!(self.base, Ruled::Cone(_)) {
+        let lo = if self.base.is_cone() {
             lo.max(N::ZERO)
         } else {
             lo

@@ -1,5 +1,9 @@
 //! The primitive solids, each in its own frame.
 
+mod oblique;
+
+pub use oblique::ObliqueFrustum;
+
 use std::fmt;
 use std::sync::Arc;
 
@@ -7,7 +11,7 @@ use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, to_f64};
 
 use crate::figure::{Figure, FigureEdge};
-use crate::polyhedron::Polyhedron;
+use crate::polyhedron::{Polyhedron, SpacePoint};
 
 /// A primitive solid. Lengths are exact; the constructors check them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,6 +76,11 @@ pub enum Primitive {
     Polyhedron {
         /// Its corners and faces.
         polyhedron: Arc<Polyhedron>,
+    },
+    /// The image of a frustum or a cylinder under a linear map.
+    ObliqueFrustum {
+        /// Its axes and the size of its top.
+        frustum: Arc<ObliqueFrustum>,
     },
 }
 
@@ -186,6 +195,9 @@ pub enum PrimitiveError {
     /// An arc that is scaled must be centred on the axis of the prism.
     #[error("an arc of a scaled figure must be centred at the origin")]
     ObliqueArc,
+    /// The axes of an oblique frustum must not lie in one plane.
+    #[error("the axes of an oblique frustum must not lie in one plane")]
+    Flat,
 }
 
 impl PrimitiveError {
@@ -196,6 +208,7 @@ impl PrimitiveError {
             Self::NoRadius => Dimension::Top,
             Self::AcrossAxis => Dimension::Major,
             Self::ObliqueArc => Dimension::Top,
+            Self::Flat => Dimension::Height,
         }
     }
 }
@@ -351,12 +364,21 @@ impl Primitive {
         Ok(Self::Revolution { figure, angle })
     }
 
+    /// The image of a frustum or a cylinder under a linear map.
+    ///
+    /// # Errors
+    /// The axes lie in one plane, or the size of the top is negative.
+    pub fn oblique_frustum(axes: [SpacePoint; 3], top: Rational) -> Result<Self, PrimitiveError> {
+        let frustum = Arc::new(ObliqueFrustum::new(axes, top)?);
+        Ok(Self::ObliqueFrustum { frustum })
+    }
+
     /// The number of surfaces that bound it.
     pub(crate) fn side_count(&self) -> usize {
         match self {
             Self::Block { .. } => 6,
             Self::Wedge { .. } => 5,
-            Self::Cylinder { .. } | Self::Frustum { .. } => 3,
+            Self::Cylinder { .. } | Self::Frustum { .. } | Self::ObliqueFrustum { .. } => 3,
             Self::Sphere { .. } | Self::Torus { .. } => 1,
             Self::Prism { figure, .. } | Self::Revolution { figure, .. } => {
                 figure.edges().len() + 2
@@ -380,6 +402,7 @@ impl Primitive {
             Self::Frustum { base, top, height } => vec![base, top, height],
             Self::Sphere { radius } => vec![radius],
             Self::Torus { major, minor } => vec![major, minor],
+            Self::ObliqueFrustum { frustum } => frustum.lengths().collect(),
         }
     }
 
@@ -423,6 +446,9 @@ impl Primitive {
             Self::Polyhedron { polyhedron } => Self::Polyhedron {
                 polyhedron: Arc::new(polyhedron.scaled(factor)),
             },
+            Self::ObliqueFrustum { frustum } => Self::ObliqueFrustum {
+                frustum: Arc::new(frustum.with_coordinates(|_, x| by(x))),
+            },
         }
     }
 
@@ -449,6 +475,7 @@ impl Primitive {
             | Self::Torus { .. }
             | Self::Prism { .. }
             | Self::Polyhedron { .. }
+            | Self::ObliqueFrustum { .. }
             | Self::Revolution { angle: None, .. } => Motion::identity(),
         };
         let primitive = match self {
@@ -464,6 +491,12 @@ impl Primitive {
             Self::Polyhedron { polyhedron } => Self::Polyhedron {
                 polyhedron: Arc::new(polyhedron.mirrored_y()),
             },
+            Self::ObliqueFrustum { frustum } => {
+                let mirrored = |i: usize, x: &Rational| if i == 1 { -x } else { x.clone() };
+                Self::ObliqueFrustum {
+                    frustum: Arc::new(frustum.with_coordinates(mirrored)),
+                }
+            }
             other => other.clone(),
         };
         MirrorImage { primitive, motion }

@@ -79,8 +79,11 @@ pub(super) fn merge<'t, N: Float>(
         let away = extent.centre - f.origin;
         match s {
             Surface::Plane(_) => extent.centre - f.z * f.z.dot(&away),
-            Surface::Cylinder(_) => f.origin + f.z * f.z.dot(&away),
-            Surface::Cone(_) | Surface::Sphere(_) | Surface::Torus(_) => f.origin,
+            Surface::Cylinder(_) | Surface::EllipticCylinder(_) => f.origin + f.z * f.z.dot(&away),
+            Surface::Cone(_)
+            | Surface::Sphere(_)
+            | Surface::Torus(_)
+            | Surface::EllipticCone(_) => f.origin,
         }
     };
     let mut list: Vec<PlacedSide<'_, N>> = Vec::new();

@@ -1,6 +1,6 @@
 //! The exact coefficients of half spaces: rational numbers in a rational frame.
 
-use super::walls;
+use super::{oblique_sides, walls};
 use crate::primitive::Primitive;
 use crate::tree::PlacedPrimitive;
 use premio_kernel::geometry::surface_pair::Coefficients;
@@ -13,6 +13,9 @@ pub(super) fn coefficients(placed: &PlacedPrimitive, side: usize) -> Coefficient
     Coefficients {
         point: placed.motion.apply_point(&own.point),
         direction: placed.motion.apply_vector(&own.direction),
+        axes: own
+            .axes
+            .map(|axes| Box::new(axes.each_ref().map(|axis| placed.motion.apply_vector(axis)))),
         ..own
     }
 }
@@ -56,6 +59,7 @@ fn in_own_frame(primitive: &Primitive, side: usize) -> Coefficients<Rational> {
             direction: polyhedron.normal(side),
             ..plane()
         },
+        Primitive::ObliqueFrustum { frustum } => oblique_sides::coefficients(frustum, side),
         Primitive::Revolution { .. } => match walls::wall(primitive, side) {
             Some(wall) => wall.coefficients,
             None => {
@@ -82,6 +86,7 @@ fn about_z(size: &Rational) -> Coefficients<Rational> {
         direction: [Rational::ZERO, Rational::ZERO, Rational::ONE],
         size: size.clone(),
         tube: Rational::ZERO,
+        axes: None,
     }
 }
 
@@ -122,6 +127,7 @@ fn cone(base: &Rational, top: &Rational, height: &Rational) -> Coefficients<Rati
         direction: [Rational::ZERO, Rational::ZERO, into],
         size: tangent,
         tube: Rational::ZERO,
+        axes: None,
     }
 }
 
@@ -170,6 +176,7 @@ mod tests {
                     Surface::Cone(c) => [c.sin / c.cos, 0.0],
                     Surface::Sphere(s) => [s.radius, 0.0],
                     Surface::Torus(t) => [t.major, t.minor],
+                    Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => [1.0, 0.0],
                 };
                 let slack = 4.0 * f64::EPSILON;
                 let direction = Vector3::from(exact.direction).normalize();

@@ -63,6 +63,7 @@ mod incidence_proof;
 mod incident_walls;
 mod membership;
 mod near_cylinders;
+mod oblique_sides;
 mod radial_order;
 mod region;
 mod relevance;

@@ -58,8 +58,8 @@ pub(super) fn check<N: Float>(
     predicates: &Predicates,
 ) -> Result<(), EvaluationError> {
     for side in solids.all.iter().flat_map(|solid| &solid.sides) {
-        if let Surface::Cone(cone) = &side.surface {
-            let away = (cone.frame.origin - extent.centre).length();
+        if let Surface::Cone(_) | Surface::EllipticCone(_) = &side.surface {
+            let away = (side.surface.frame().origin - extent.centre).length();
             let moved = N::from_f64(ROUNDINGS) * N::EPSILON * away;
             if moved.is_beyond(predicates.resolution()) {
                 return Err(EvaluationError::NearCylinder {

@@ -1,6 +1,7 @@
 //! Primitives and parts no thicker than the resolution: their opposite faces coincide, and they
 //! vanish.
 
+use crate::polyhedron::{SpacePoint, cross, dot};
 use crate::primitive::Primitive;
 use crate::tree::{PlacedPrimitive, Tree};
 use premio_kernel::brep::face_integrals::Mass;
@@ -65,6 +66,14 @@ fn thickness(primitive: &Primitive) -> f64 {
         Primitive::Sphere { radius } => 2.0 * to_f64(radius),
         Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
         Primitive::Prism { height, .. } => to_f64(height),
+        Primitive::ObliqueFrustum { frustum } => {
+            let [x, y, z] = frustum.axes();
+            // The volume of the box of the axes over the greatest of its sides.
+            let length = |v: &SpacePoint| to_f64(&dot(v, v)).sqrt();
+            let sides = [cross(x, y), cross(y, z), cross(z, x)];
+            let greatest = sides.iter().map(length).fold(0.0, f64::max);
+            to_f64(&dot(&sides[0], z)).abs() / greatest
+        }
         Primitive::Revolution { .. } | Primitive::Polyhedron { .. } => f64::INFINITY,
     }
 }
@@ -87,6 +96,7 @@ fn middle(placed: &PlacedPrimitive) -> [f64; 3] {
         | Primitive::Torus { .. }
         | Primitive::Revolution { .. }
         | Primitive::Polyhedron { .. } => [nothing(), nothing(), nothing()],
+        Primitive::ObliqueFrustum { frustum } => frustum.axes()[2].each_ref().map(half),
     };
     placed.motion.apply_point(&point).each_ref().map(to_f64)
 }

@@ -116,6 +116,7 @@ fn about_z(z: Rational) -> Coefficients<Rational> {
         direction: [Rational::ZERO, Rational::ZERO, Rational::ONE],
         size: Rational::ZERO,
         tube: Rational::ZERO,
+        axes: None,
     }
 }
 

@@ -3,10 +3,13 @@
 //! The surfaces are those of the primitives. Coincident surfaces of several primitives are merged,
 //! so that neighbouring lines that cross the same face of the part cross the same surface.
 
+use super::oblique::ObliqueShape;
 use super::section::{Edge, SectionShape, Sweep};
 use super::shape::Shape;
 use super::{Event, Leaf, Ray, RayOracle};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
+use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::ROUNDING;
 
 /// A point at which a line enters or leaves material. Entries and exits alternate, starting with an
@@ -28,16 +31,52 @@ enum Kind {
     Cone,
     Sphere,
     Torus,
+    Elliptic,
 }
 
 /// A surface: a point on it, its centre or its apex; its normal or axis, up to the sign; its radii,
-/// or the slope of a cone.
+/// or the slope of a cone. An elliptic surface itself.
 #[derive(Clone, Copy, Debug)]
 struct Carrier {
     kind: Kind,
     point: Vector3<f64>,
     axis: Vector3<f64>,
     sizes: [f64; 2],
+    elliptic: Option<EllipticCarrier>,
+}
+
+/// A surface o + x cos u + y sin u + v z, or o + v (x cos u + y sin u + z), by o and its axes.
+#[derive(Clone, Copy, Debug)]
+struct EllipticCarrier {
+    axes: Matrix3<f64>,
+    is_cone: bool,
+    surface: Surface,
+}
+
+impl EllipticCarrier {
+    fn new(point: Vector3<f64>, axes: Matrix3<f64>, is_cone: bool) -> Self {
+        let columns = [0, 1, 2].map(|i| axes.column(i).into());
+        let surface = match is_cone {
+            true => Surface::EllipticCone(EllipticCone::with_axes(point.into(), columns)),
+            false => Surface::EllipticCylinder(EllipticCylinder::with_axes(point.into(), columns)),
+        };
+        Self {
+            axes,
+            is_cone,
+            surface,
+        }
+    }
+
+    /// Whether points around the other one lie on this one.
+    fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
+        let places = [0.1, 1.3, 2.4, 3.6, 4.9, 5.8].into_iter();
+        let mut places = places.flat_map(|u| [(u, 0.5 * size), (u, size)]);
+        self.is_cone == other.is_cone
+            && places.all(|(u, v)| {
+                let p = other.surface.point(u, v);
+                self.surface.distance(&p).abs() <= near
+            })
+    }
 }
 
 /// The surfaces of a tree's primitives, without duplicates.
@@ -66,6 +105,25 @@ impl Carrier {
             point,
             axis,
             sizes,
+            elliptic: None,
+        }
+    }
+
+    /// The wall of an oblique frustum.
+    fn elliptic(frustum: &ObliqueShape) -> Self {
+        let zero = Vector3::zeros();
+        let mut axes = frustum.axes;
+        let is_cone = frustum.growth != 0.0;
+        let point = match is_cone {
+            true => axes.column(2) / -frustum.growth,
+            false => zero,
+        };
+        if is_cone {
+            axes.set_column(2, &-point);
+        }
+        Self {
+            elliptic: Some(EllipticCarrier::new(point, axes, is_cone)),
+            ..Self::new(Kind::Elliptic, point, zero, [0.0; 2])
         }
     }
 
@@ -81,17 +139,24 @@ impl Carrier {
         let point = match self.kind {
             Kind::Plane => middle - along,
             Kind::Cylinder => point + along,
-            Kind::Cone | Kind::Sphere | Kind::Torus => point,
+            Kind::Cone | Kind::Sphere | Kind::Torus | Kind::Elliptic => point,
         };
+        let elliptic = self
+            .elliptic
+            .map(|own| EllipticCarrier::new(point, leaf.turn * own.axes, own.is_cone));
         Self {
             point,
             axis,
+            elliptic,
             ..*self
         }
     }
 
     /// The normal at a point on it, up to length and sign.
     fn normal(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        if let Some(own) = &self.elliptic {
+            return own.surface.normal(&(*p).into());
+        }
         let away = p - self.point;
         let along = away.dot(&self.axis);
         let radial = away - self.axis * along;
@@ -99,13 +164,16 @@ impl Carrier {
             Kind::Plane => self.axis,
             Kind::Cylinder => radial,
             Kind::Cone => radial.normalize() - self.axis * (self.sizes[0] * along.signum()),
-            Kind::Sphere => away,
+            Kind::Sphere | Kind::Elliptic => away,
             Kind::Torus => away - radial.normalize() * self.sizes[0],
         }
     }
 
     /// The distance of a point from it.
     fn distance(&self, p: &Vector3<f64>) -> f64 {
+        if let Some(own) = &self.elliptic {
+            return own.surface.distance(&(*p).into()).abs();
+        }
         let away = p - self.point;
         let along = away.dot(&self.axis);
         let radius = (away - self.axis * along).norm();
@@ -114,7 +182,7 @@ impl Carrier {
             Kind::Plane => along.abs(),
             Kind::Cylinder => (radius - a).abs(),
             Kind::Cone => (radius - a * along.abs()).abs() / a.hypot(1.0),
-            Kind::Sphere => (away.norm() - a).abs(),
+            Kind::Sphere | Kind::Elliptic => (away.norm() - a).abs(),
             Kind::Torus => ((radius - a).hypot(along) - b).abs(),
         }
     }
@@ -122,6 +190,9 @@ impl Carrier {
     /// Whether two carriers differ by at most `near`, a distance in a part of the given size.
     fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
         let sizes = self.sizes.iter().zip(other.sizes);
+        if let (Some(own), Some(other)) = (&self.elliptic, &other.elliptic) {
+            return own.coincides(other, near, size);
+        }
         self.kind == other.kind
             && (self.point - other.point).norm() <= near
             && self.axis.cross(&other.axis).norm() * size <= near
@@ -159,6 +230,13 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
             vec![Carrier::new(Kind::Torus, zero, z, [major, minor])]
         }
         Shape::Section(section) => section_carriers(section),
+        Shape::Oblique(frustum) => {
+            let [x, y, z] = [0, 1, 2].map(|i| Vector3::from(frustum.axes.column(i)));
+            let normal = x.cross(&y);
+            let ends = [zero, z].map(|at| Carrier::plane(at, normal));
+            let wall = Carrier::elliptic(frustum);
+            ends.into_iter().chain([wall]).collect()
+        }
         Shape::Facets(facets) => {
             let planes = facets.planes();
             planes

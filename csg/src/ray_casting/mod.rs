@@ -7,6 +7,7 @@
 
 mod crossing;
 mod facets;
+mod oblique;
 mod polynomial;
 mod section;
 mod shape;

@@ -1,6 +1,7 @@
 //! The primitives in their own frames: point membership and intersection with a line.
 
 use super::facets::FacetShape;
+use super::oblique::ObliqueShape;
 use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
 use super::section::SectionShape;
 use crate::primitive::Primitive;
@@ -28,6 +29,8 @@ pub(super) enum Shape {
     Section(SectionShape),
     /// A polyhedron.
     Facets(FacetShape),
+    /// An oblique frustum.
+    Oblique(ObliqueShape),
 }
 
 /// Clips `range` to the part where `a + b t <= 0`; returns false if it is empty.
@@ -64,6 +67,7 @@ impl Shape {
                 Self::Section(SectionShape::revolution(figure, angle.as_ref()))
             }
             Primitive::Polyhedron { polyhedron } => Self::Facets(FacetShape::new(polyhedron)),
+            Primitive::ObliqueFrustum { frustum } => Self::Oblique(ObliqueShape::new(frustum)),
         }
     }
 
@@ -86,6 +90,7 @@ impl Shape {
             &Self::Sphere(r) => [[-r; 3], [r; 3]],
             Self::Section(section) => section.bounds(),
             Self::Facets(facets) => facets.bounds(),
+            Self::Oblique(frustum) => frustum.bounds,
             &Self::Torus { major, minor } => {
                 let r = major + minor;
                 [[-r, -r, -minor], [r, r, minor]]
@@ -109,6 +114,7 @@ impl Shape {
                 false => 1.0,
             },
             &Self::Torus { major, minor } => (p.x.hypot(p.y) - major).hypot(p.z) - minor,
+            Self::Oblique(frustum) => frustum.level(p),
         }
     }
 
@@ -187,6 +193,10 @@ impl Shape {
             }
             Self::Facets(facets) => {
                 facets.crossings(o, d, &mut add);
+                cuts.sort_by(f64::total_cmp);
+            }
+            Self::Oblique(frustum) => {
+                frustum.crossings(o, d).into_iter().for_each(add);
                 cuts.sort_by(f64::total_cmp);
             }
             &Self::Torus { major, minor } => {

@@ -58,9 +58,10 @@ pub(super) fn bad_length(
     span: Range<usize>,
 ) -> SpannedError {
     let found = match (value, error) {
-        (Some(value), _) => show(value),
         (None, PrimitiveError::AcrossAxis) => "a figure that crosses the axis".to_owned(),
+        (_, PrimitiveError::Flat) => "axes in one plane".to_owned(),
         (None, PrimitiveError::ObliqueArc) => "an arc about another point".to_owned(),
+        (Some(value), _) => show(value),
         (None, _) => "a wrong length".to_owned(),
     };
     let expected = match error {
@@ -68,6 +69,7 @@ pub(super) fn bad_length(
         PrimitiveError::Negative(what) => format!("a {what} of zero or more"),
         PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
         PrimitiveError::AcrossAxis => "a figure on one side of the axis".to_owned(),
+        PrimitiveError::Flat => "axes that span space".to_owned(),
         PrimitiveError::ObliqueArc => "arcs about the origin, where a figure is scaled".to_owned(),
     };
     let is_about_circles = error == PrimitiveError::ObliqueArc;

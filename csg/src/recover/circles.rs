@@ -43,7 +43,8 @@ impl Round<'_> {
             Primitive::Block { .. }
             | Primitive::Wedge { .. }
             | Primitive::Revolution { .. }
-            | Primitive::Polyhedron { .. } => [0.0, 0.0],
+            | Primitive::Polyhedron { .. }
+            | Primitive::ObliqueFrustum { .. } => [0.0, 0.0],
         };
         let [lo, hi] = match self.is_reversed {
             true => [-hi, -lo],

@@ -181,5 +181,13 @@ fn members(primitive: &Primitive) -> String {
                 faces.join(",")
             )
         }
+        Primitive::ObliqueFrustum { frustum } => {
+            let [x, y, z] = frustum.axes().each_ref().map(|axis| list(axis));
+            let top = match frustum.top().is_one() {
+                true => String::new(),
+                false => format!(r#","top":{}"#, decimal(frustum.top())),
+            };
+            format!(r#""oblique_frustum","x":{x},"y":{y},"z":{z}{top}"#)
+        }
     }
 }

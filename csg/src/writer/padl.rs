@@ -157,6 +157,14 @@ fn call(primitive: &Primitive) -> String {
             format!("REV({}{angle})", polygon(figure))
         }
         Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
+        Primitive::ObliqueFrustum { frustum } => {
+            let [x, y, z] = frustum.axes().each_ref().map(tuple);
+            let top = match frustum.top().is_one() {
+                true => String::new(),
+                false => format!(", TOP={}", quotient(frustum.top())),
+            };
+            format!("OBL({x}, {y}, {z}{top})")
+        }
     }
 }
 

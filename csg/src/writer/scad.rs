@@ -226,5 +226,20 @@ fn node(primitive: &Primitive) -> String {
             )
         }
         Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
+        Primitive::ObliqueFrustum { frustum } => {
+            let axes = frustum.axes();
+            let row = |i: usize| {
+                let [x, y, z] = [0, 1, 2].map(|k| decimal(&axes[k][i]));
+                format!("[{x}, {y}, {z}, 0]")
+            };
+            format!(
+                "multmatrix([{}, {}, {}, [0, 0, 0, 1]]) {{ \
+                 cylinder({SMOOTH}, h = 1, r1 = 1, r2 = {}, center = false); }}",
+                row(0),
+                row(1),
+                row(2),
+                decimal(frustum.top())
+            )
+        }
     }
 }

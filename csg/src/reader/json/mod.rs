@@ -2,6 +2,7 @@
 
 mod contours;
 mod figure;
+mod oblique;
 mod polyhedron;
 mod region;
 mod value;
@@ -18,6 +19,7 @@ use super::spanned::Spanned;
 use super::{PartPlace, Program, StandaloneText};
 use crate::builder::{Builder, MAX_MOTION_BITS, SolidId};
 use crate::construction::convex_hull;
+use crate::polyhedron::SpacePoint;
 use crate::primitive::{Dimension, Primitive, PrimitiveError};
 use crate::transform::{self, Transform};
 use crate::tree::Operation;
@@ -58,7 +60,7 @@ const OPERATIONS: [(&str, SolidOperation); 4] = [
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
-const PRIMITIVES: [(&str, &[&str]); 10] = [
+const PRIMITIVES: [(&str, &[&str]); 11] = [
     ("block", &["size"]),
     ("wedge", &["size"]),
     ("cylinder", &["r", "h"]),
@@ -69,6 +71,7 @@ const PRIMITIVES: [(&str, &[&str]); 10] = [
     ("prism", &["figure", "h", "top"]),
     ("revolution", &["figure", "angle"]),
     ("polyhedron", &["points", "faces"]),
+    ("oblique_frustum", &["x", "y", "z", "top"]),
 ];
 
 /// A pending step; the solids created so far are on a stack.
@@ -194,6 +197,10 @@ impl<'a> Reader<'a> {
                 let polyhedron = polyhedron::polyhedron(fields)?;
                 Some(self.builder.primitive(polyhedron))
             }
+            "oblique_frustum" => {
+                let frustum = oblique::oblique_frustum(fields)?;
+                Some(self.builder.primitive(frustum))
+            }
             _ => None,
         };
         if let Some(part) = swept {
@@ -235,6 +242,22 @@ fn make(name: &str, lengths: &[Length]) -> Result<Primitive, PrimitiveError> {
         "sphere" => Primitive::sphere(n(0)),
         _ => Primitive::torus(n(0), n(1)),
     }
+}
+
+/// Three numbers; `expected` describes them.
+fn coordinates(
+    document: &Document,
+    id: ValueId,
+    expected: &str,
+) -> Result<SpacePoint, SpannedError> {
+    let values = items(document, id, expected)?.iter();
+    let values: Vec<Rational> = values
+        .map(|&id| Ok(number(document, id)?.value))
+        .collect::<Result<_, SpannedError>>()?;
+    SpacePoint::try_from(values).map_err(|values| {
+        let found = format!("an array of {}", values.len());
+        SpannedError::input(document.value(id).span.clone(), found, expected)
+    })
 }
 
 /// The index of the number of a primitive to which an error refers.

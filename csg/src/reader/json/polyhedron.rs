@@ -7,7 +7,7 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::refusal::invalid_polyhedron;
 use super::value::ValueId;
-use super::{Fields, items, number};
+use super::{Fields, coordinates, items, number};
 use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
 use crate::primitive::Primitive;
 
@@ -16,17 +16,7 @@ use crate::primitive::Primitive;
 pub(super) fn polyhedron(fields: &Fields<'_>) -> Result<Primitive, SpannedError> {
     let document = fields.document;
     let points = fields.array(fields.require("points")?, "an array of points")?;
-    let point = |&id: &ValueId| -> Result<SpacePoint, SpannedError> {
-        let expected = "a point: [x,y,z]";
-        let values = items(document, id, expected)?.iter();
-        let values: Vec<Rational> = values
-            .map(|&id| Ok(number(document, id)?.value))
-            .collect::<Result<_, SpannedError>>()?;
-        SpacePoint::try_from(values).map_err(|values| {
-            let found = format!("an array of {}", values.len());
-            SpannedError::input(document.value(id).span.clone(), found, expected)
-        })
-    };
+    let point = |&id: &ValueId| coordinates(document, id, "a point: [x,y,z]");
     let points: Vec<SpacePoint> = points.iter().map(point).collect::<Result<_, _>>()?;
     let member = fields.require("faces")?;
     let index = |&id: &ValueId| {

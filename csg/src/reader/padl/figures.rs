@@ -297,6 +297,10 @@ impl Machine {
         let value = match outline {
             Outline::Polygon => polygon(list, span)?,
             Outline::Polyhedron => self.polyhedron(list, span)?,
+            Outline::ObliqueFrustum => {
+                let frustum = oblique_frustum(list, span)?;
+                Value::Solid(self.builder.primitive(frustum))
+            }
         };
         self.push(value, span);
         Ok(())
@@ -324,6 +328,23 @@ impl Machine {
         let solid = self.builder.primitive(Primitive::Polyhedron { polyhedron });
         Ok(Value::Solid(solid))
     }
+}
+
+/// An oblique frustum by its axes. The third may have the size of the top after its coordinates.
+fn oblique_frustum(list: ListValue, span: &Range<usize>) -> Result<Primitive, SpannedError> {
+    let expected = "three axes `(x, y, z)`; the third is the centre of the top, with its size after \
+                    the coordinates unless it is 1";
+    let wrong = |found: String| SpannedError::input(span.clone(), found, expected);
+    let [tuples] = <[Vec<Spanned<TupleValue>>; 1]>::try_from(list.parts)
+        .map_err(|parts| wrong(format!("{} lists", parts.len())))?;
+    let [x, y, z] = <[Spanned<TupleValue>; 3]>::try_from(tuples)
+        .map_err(|tuples| wrong(format!("{} tuples", tuples.len())))?;
+    let (third, top) = match plain::<4>(&z) {
+        Some([a, b, c, top]) => ([a, b, c], top),
+        None => (point(z)?, Rational::ONE),
+    };
+    Primitive::oblique_frustum([point(x)?, point(y)?, third], top.clone())
+        .map_err(|error| bad_length(error, Some(&top), span.clone()))
 }
 
 /// The value of a figure that was made.

@@ -163,6 +163,7 @@ impl Construction {
 pub(super) enum Outline {
     Polygon,
     Polyhedron,
+    ObliqueFrustum,
 }
 
 impl Outline {
@@ -170,6 +171,7 @@ impl Outline {
         match self {
             Self::Polygon => "PGN",
             Self::Polyhedron => "POLY",
+            Self::ObliqueFrustum => "OBL",
         }
     }
 }
@@ -188,9 +190,9 @@ pub(super) enum Predefined {
 }
 
 /// All predefined words, in the spelling of messages.
-pub(super) const PREDEFINED: [&str; 16] = [
+pub(super) const PREDEFINED: [&str; 17] = [
     "sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR", "SQU", "CIR", "PGN", "OFF", "PRI",
-    "REV", "POLY", "HULL",
+    "REV", "POLY", "OBL", "HULL",
 ];
 
 impl Predefined {
@@ -209,6 +211,7 @@ impl Predefined {
             "REV" => Self::Construction(Construction::Revolution),
             "PGN" => Self::Outline(Outline::Polygon),
             "POLY" => Self::Outline(Outline::Polyhedron),
+            "OBL" => Self::Outline(Outline::ObliqueFrustum),
             "HULL" => Self::Hull,
             "PI" => Self::Pi,
             "FOR" => Self::For,

@@ -7,6 +7,7 @@
 
 pub mod mesh;
 mod parameters;
+mod rational_circle;
 mod spline;
 pub mod step;
 pub mod two_manifold;

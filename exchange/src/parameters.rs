@@ -1,5 +1,7 @@
-//! The parameters of a surface along a curve on it.
+//! The parameters of a surface along a curve on it. Those of an elliptic surface are the parameters of
+//! the rational B-spline that a file has in its place, which starts at the window's start.
 
+use crate::rational_circle;
 use nalgebra::{Point2, Point3};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Sphere, Surface, turn};
@@ -40,9 +42,16 @@ impl ParameterWindow {
             return Some([x, y]);
         }
         let rho = (x.square() + y.square()).root();
-        let about = angle(y, x);
+        let about = match self.radii() {
+            Some([a, b]) => self.file_angle_along(angle(y.scale(1.0 / b), x.scale(1.0 / a))),
+            None => angle(y, x),
+        };
         let along = match &self.surface {
-            Surface::Plane(_) | Surface::Cylinder(_) | Surface::Cone(_) => z,
+            Surface::Plane(_)
+            | Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => z,
             Surface::Sphere(_) => angle(z, rho),
             Surface::Torus(s) => angle(z, rho - Jet::constant(s.major)),
         };
@@ -57,9 +66,55 @@ impl ParameterWindow {
         let u = match self.surface {
             Surface::Plane(_) => u,
             _ if on_axis => f64::NAN,
+            _ if self.radii().is_some() => {
+                let start = self.starts[0];
+                start + rational_circle::parameter(turn(u - start))
+            }
             _ => self.within(0, u),
         };
         Point2::new(u, self.within(1, v))
+    }
+
+    /// The radii of an elliptic surface.
+    fn radii(&self) -> Option<[f64; 2]> {
+        match &self.surface {
+            Surface::EllipticCylinder(s) => Some(s.radii),
+            Surface::EllipticCone(s) => Some(s.slopes),
+            _ => None,
+        }
+    }
+
+    /// The file's parameter at an angle that changes, in the window.
+    fn file_angle_along(&self, angle: Jet<f64>) -> Jet<f64> {
+        let start = self.starts[0];
+        let from_start = Jet {
+            v: turn(angle.v - start),
+            ..angle
+        };
+        let parameter = rational_circle::parameter_along(from_start);
+        Jet {
+            v: start + parameter.v,
+            ..parameter
+        }
+    }
+
+    /// The surface's own angle at a parameter.
+    pub fn angle_at(&self, u: f64) -> f64 {
+        match self.radii() {
+            Some(_) => self.starts[0] + rational_circle::angle(turn(u - self.starts[0])),
+            None => u,
+        }
+    }
+
+    /// The same window with its seam at an angle of the surface, which the surface is turned to
+    /// unless it is elliptic.
+    pub fn cut_at(&self, angle: f64) -> Self {
+        let mut cut = *self;
+        match self.radii() {
+            Some(_) => cut.starts[0] = angle,
+            None => cut.surface = turned(&self.surface, angle),
+        }
+        cut
     }
 
     /// A parameter shifted into the window.
@@ -77,7 +132,7 @@ impl ParameterWindow {
 
     /// The point with the given parameters.
     pub fn point(&self, uv: [f64; 2]) -> Point3<f64> {
-        self.surface.point(uv[0], uv[1])
+        self.surface.point(self.angle_at(uv[0]), uv[1])
     }
 
     /// The value that differs from `x` by whole periods and is closest to `other`.
@@ -93,7 +148,7 @@ impl ParameterWindow {
 const AXIS: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// The same surface with its angle measured from another ruling or meridian.
-pub fn turned(surface: &Surface, by: f64) -> Surface {
+fn turned(surface: &Surface, by: f64) -> Surface {
     let (sin, cos) = by.sin_cos();
     let f = surface.frame();
     let x = f.x * cos + f.y * sin;
@@ -122,6 +177,8 @@ fn placed(surface: &Surface, frame: Frame) -> Surface {
         Surface::Cone(s) => s.frame = frame,
         Surface::Sphere(s) => s.frame = frame,
         Surface::Torus(s) => s.frame = frame,
+        Surface::EllipticCylinder(s) => s.frame = frame,
+        Surface::EllipticCone(s) => s.frame = frame,
     }
     placed
 }

@@ -11,6 +11,7 @@ mod overlap;
 mod part21;
 mod product;
 mod shape;
+mod spline_surface;
 mod thin;
 
 use crate::spline::SplineError;

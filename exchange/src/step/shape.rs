@@ -14,8 +14,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Writes the shape of a part.
 pub(super) struct Shape<'s, 'e> {
-    exchange: &'e mut Exchange,
-    seamed: &'s TwoManifold<'s>,
+    pub(super) exchange: &'e mut Exchange,
+    pub(super) seamed: &'s TwoManifold<'s>,
     accuracy: f64,
     /// The context of the curves in the parameters of surfaces.
     parametric: Option<Id>,
@@ -145,7 +145,7 @@ impl<'s, 'e> Shape<'s, 'e> {
         id
     }
 
-    fn point(&mut self, p: &Point3<f64>) -> Id {
+    pub(super) fn point(&mut self, p: &Point3<f64>) -> Id {
         let place = Reals(p.coords.as_slice());
         self.exchange
             .add(format_args!("CARTESIAN_POINT('',{place})"))
@@ -179,29 +179,31 @@ impl<'s, 'e> Shape<'s, 'e> {
                 level: -s.pole_angle(),
             };
         }
+        if surface.is_elliptic() {
+            let id = self.elliptic_surface(face);
+            return Placed { id, level };
+        }
         let placement = self.placement(&frame);
-        let id = match surface {
-            Surface::Plane(_) => self.exchange.add(format_args!("PLANE('',{placement})")),
-            Surface::Cylinder(s) => self.exchange.add(format_args!(
-                "CYLINDRICAL_SURFACE('',{placement},{})",
-                Real(s.radius)
-            )),
+        let entity = match surface {
+            Surface::Cylinder(s) => {
+                format!("CYLINDRICAL_SURFACE('',{placement},{})", Real(s.radius))
+            }
             Surface::Cone(s) => {
                 let (radius, angle) = (Real(level * s.sin / s.cos), Real(half_angle(s)));
-                self.exchange.add(format_args!(
-                    "CONICAL_SURFACE('',{placement},{radius},{angle})"
-                ))
+                format!("CONICAL_SURFACE('',{placement},{radius},{angle})")
             }
-            Surface::Sphere(s) => self.exchange.add(format_args!(
-                "SPHERICAL_SURFACE('',{placement},{})",
-                Real(s.radius)
-            )),
-            Surface::Torus(s) => self.exchange.add(format_args!(
-                "TOROIDAL_SURFACE('',{placement},{},{})",
-                Real(s.major),
-                Real(s.minor)
-            )),
+            Surface::Sphere(s) => {
+                format!("SPHERICAL_SURFACE('',{placement},{})", Real(s.radius))
+            }
+            Surface::Torus(s) => {
+                let (major, minor) = (Real(s.major), Real(s.minor));
+                format!("TOROIDAL_SURFACE('',{placement},{major},{minor})")
+            }
+            Surface::Plane(_) | Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => {
+                format!("PLANE('',{placement})")
+            }
         };
+        let id = self.exchange.add(format_args!("{entity}"));
         Placed { id, level }
     }
 
@@ -389,7 +391,8 @@ fn needs_parameter_curve(edge: &SeamedEdge<'_>, window: &ParameterWindow) -> boo
     if edge.source.is_none() || matches!(window.surface, Surface::Plane(_)) {
         return false;
     }
-    if matches!(window.surface, Surface::Torus(torus) if !torus.is_ring()) {
+    let is_swept = matches!(window.surface, Surface::Torus(torus) if !torus.is_ring());
+    if is_swept || window.surface.is_elliptic() {
         return true;
     }
     bends(edge, window)

@@ -11,7 +11,7 @@ mod splitting;
 use super::SeamError;
 use super::gaps::{Samples, axes};
 use super::tracks::{Course, Track, meridian, ruling, tube};
-use crate::parameters::{ParameterWindow, turned, with_axis};
+use crate::parameters::{ParameterWindow, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::{FaceLocator, PointLocation};
@@ -120,6 +120,18 @@ impl Cut {
     }
 }
 
+/// A ruling that starts and ends beyond the face.
+const BEYOND_BOTH: Course = Course::Open {
+    first: None,
+    last: None,
+};
+
+/// Where a ruling of a cone starts, by the distance from the apex.
+struct RulingStart {
+    slant: f64,
+    course: Course,
+}
+
 impl Faced<'_> {
     fn cut(&self) -> Option<Cut> {
         let Surface::Sphere(sphere) = self.brep.surface(self.face) else {
@@ -155,9 +167,8 @@ impl Faced<'_> {
         }
         let candidates = self.samples.candidates(&whole, 0);
         let around = |u: f64| {
-            let surface = turned(&surface, u);
-            let seams = self.seams(&surface, 0, 0.0)?;
-            let window = ParameterWindow { surface, ..whole };
+            let window = whole.cut_at(whole.angle_at(u));
+            let seams = self.seams(&window.surface, 0, window.starts[0])?;
             Some(Cut { window, seams })
         };
         let found = candidates.into_iter().map(around);
@@ -219,10 +230,7 @@ impl Faced<'_> {
         }
         let values = self.samples.critical(window, across);
         let mut windows = values.into_iter().map(|at| match across {
-            0 => ParameterWindow {
-                surface: turned(&window.surface, at),
-                ..*window
-            },
+            0 => window.cut_at(window.angle_at(at)),
             _ => ParameterWindow {
                 starts: [0.0, at],
                 ..*window
@@ -354,6 +362,8 @@ impl Faced<'_> {
             Surface::Cylinder(s) => self.cylinder_track(surface, s).into_iter().collect(),
             Surface::Cone(s) => self.cone_track(surface, s).into_iter().collect(),
             Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
+            Surface::EllipticCylinder(_) => self.oval_track(surface, at).into_iter().collect(),
+            Surface::EllipticCone(_) => self.oblique_track(surface, at).into_iter().collect(),
             Surface::Torus(s) if !s.is_ring() => self.sheet_track(surface, s).into_iter().collect(),
             Surface::Torus(s) => {
                 let window = ParameterWindow {
@@ -374,32 +384,56 @@ impl Faced<'_> {
 
     /// The ruling of a cylinder, from below the face.
     fn cylinder_track(&self, surface: &Surface, s: &Cylinder) -> Option<Track> {
-        let heights = self.samples.points().map(|p| s.frame.coordinates(p).z);
-        let lowest = heights.fold(f64::INFINITY, f64::min) - s.radius;
-        let from = s.frame.point(s.radius, 0.0, lowest);
-        let course = Course::Open {
-            first: None,
-            last: None,
-        };
-        ruling(surface, from, course)
+        let from = s
+            .frame
+            .point(s.radius, 0.0, self.lowest(surface) - s.radius);
+        ruling(surface, from, 0.0, BEYOND_BOTH)
+    }
+
+    /// The ruling of an elliptic cylinder at an angle, from below the face.
+    fn oval_track(&self, surface: &Surface, at: f64) -> Option<Track> {
+        let lowest = self.lowest(surface);
+        let radius = (surface.point(at, 0.0) - surface.frame().origin).norm();
+        ruling(surface, surface.point(at, lowest - radius), at, BEYOND_BOTH)
+    }
+
+    /// The least height of a point of the edges above the origin of a surface.
+    fn lowest(&self, surface: &Surface) -> f64 {
+        let frame = surface.frame();
+        let heights = self.samples.points().map(|p| frame.coordinates(p).z);
+        heights.fold(f64::INFINITY, f64::min)
     }
 
     /// The ruling of a cone, from its apex. If edges end at the apex, it starts above the apex.
     fn cone_track(&self, surface: &Surface, s: &Cone) -> Option<Track> {
-        let f = &s.frame;
-        let slants = self.samples.points().map(|p| (p - f.origin).norm());
+        let start = self.slant(&s.frame.origin);
+        let from = s.frame.point(start.slant * s.sin, 0.0, start.slant * s.cos);
+        ruling(surface, from, 0.0, start.course)
+    }
+
+    /// The same of an elliptic cone, at an angle.
+    fn oblique_track(&self, surface: &Surface, at: f64) -> Option<Track> {
+        let apex = surface.frame().origin;
+        let start = self.slant(&apex);
+        let along = (surface.point(at, 1.0) - apex).normalize();
+        ruling(surface, apex + along * start.slant, at, start.course)
+    }
+
+    /// The start of a ruling above an apex.
+    fn slant(&self, apex: &Point3<f64>) -> RulingStart {
+        let slants = self.samples.points().map(|p| (p - apex).norm());
         let nearest = slants
             .filter(|d| *d > self.resolution)
             .fold(f64::INFINITY, f64::min);
-        let at_apex = |p: &Point3<f64>| (p - f.origin).norm() <= self.resolution;
+        let at_apex = |p: &Point3<f64>| (p - apex).norm() <= self.resolution;
         let is_free = !self.samples.points().any(at_apex);
-        let slant = if is_free { 0.0 } else { 0.25 * nearest };
-        let from = f.point(slant * s.sin, 0.0, slant * s.cos);
-        let course = Course::Open {
-            first: is_free.then_some(0.0),
-            last: None,
-        };
-        ruling(surface, from, course)
+        RulingStart {
+            slant: if is_free { 0.0 } else { 0.25 * nearest },
+            course: Course::Open {
+                first: is_free.then_some(0.0),
+                last: None,
+            },
+        }
     }
 
     /// The meridian of a torus that reaches its axis, from pole to pole. Where edges end at a pole, it

@@ -30,8 +30,14 @@ pub(super) enum Course {
     },
 }
 
-pub(super) fn ruling(surface: &Surface, from: Point3<f64>, course: Course) -> Option<Track> {
-    let walk = SurfacePath::ruling(surface, &from, 0.0, Sense::Along)?;
+/// The ruling at an angle, from a point of it.
+pub(super) fn ruling(
+    surface: &Surface,
+    from: Point3<f64>,
+    at: f64,
+    course: Course,
+) -> Option<Track> {
+    let walk = SurfacePath::ruling(surface, &from, at, Sense::Along)?;
     let direction = (walk.point(1.0) - from).normalize();
     let line = Line {
         origin: from,

@@ -88,6 +88,8 @@ pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> 
         Surface::Cylinder(s) => about(&s.frame),
         Surface::Cone(s) => about(&s.frame),
         Surface::Plane(_) => true,
+        // Their cross sections are no circles.
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => false,
     };
     let others = others(brep, strokes);
     (frames.iter().all(about) && others.iter().all(turned)).then_some(first)
@@ -234,6 +236,19 @@ impl<'a> Edges<'a> {
             }
             (Surface::Cone(s), Surface::Cone(t)) => {
                 at(&s.frame, &t.frame) && turned(&s.frame, &t.frame) && (s.sin - t.sin).abs() < NEAR
+            }
+            (Surface::EllipticCylinder(s), Surface::EllipticCylinder(t)) => {
+                let off = to(&s.frame, &t.frame).cross(&t.frame.z).norm();
+                let radii = (0..2).all(|i| same(s.radii[i], t.radii[i]));
+                let is_along = along(&(turn.rotation * s.frame.x), &t.frame.x)
+                    || along(&(turn.rotation * s.frame.x), &-t.frame.x);
+                same(off, 0.0) && parallel(&s.frame, &t.frame) && radii && is_along
+            }
+            (Surface::EllipticCone(s), Surface::EllipticCone(t)) => {
+                let slopes = (0..2).all(|i| (s.slopes[i] - t.slopes[i]).abs() < NEAR);
+                let is_along = along(&(turn.rotation * s.frame.x), &t.frame.x)
+                    || along(&(turn.rotation * s.frame.x), &-t.frame.x);
+                at(&s.frame, &t.frame) && turned(&s.frame, &t.frame) && slopes && is_along
             }
             // A plane without a sharp edge lies between curved faces.
             (Surface::Plane(_), Surface::Plane(_)) => true,

@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{FaceId, Sense};
+use premio_kernel::geometry::elliptic_surface::EllipticCone;
 use premio_kernel::geometry::surface::{Cone, Surface, Torus};
 use premio_visibility::camera::projection::LineOfSight;
 
@@ -35,6 +36,12 @@ pub fn front(brep: &Brep, face: FaceId, sight: &LineOfSight, hint: f64) -> Optio
         }
         Surface::Cone(s) => cone(s, &q, &w, outwards),
         Surface::Torus(s) => torus(s, &q, &w, outwards, hint)?,
+        Surface::EllipticCylinder(s) => {
+            let (of_line, of_origin) = (s.gradient(&w), s.gradient(&q));
+            let c = of_origin.dot(&q) - 1.0;
+            entry(of_line.dot(&w), of_origin.dot(&w), c, outwards)
+        }
+        Surface::EllipticCone(s) => elliptic_cone(s, &q, &w, outwards),
     };
     at.is_finite().then_some(at)
 }
@@ -68,6 +75,23 @@ fn cone(s: &Cone, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool) -> f64 {
         let rho = p.x.hypot(p.y);
         let slope = (p.x * w.x + p.y * w.y) / rho * s.cos - w.z * s.sin;
         let is_front = (slope <= 0.0) == enters;
+        if at.is_finite() && p.z >= 0.0 && (is_front || best.is_nan()) {
+            best = at;
+        }
+    }
+    best
+}
+
+/// The same of an elliptic cone.
+fn elliptic_cone(s: &EllipticCone, q: &Vector3<f64>, w: &Vector3<f64>, enters: bool) -> f64 {
+    let (of_line, of_origin) = (s.gradient(w), s.gradient(q));
+    let (a, b, c) = (of_line.dot(w), of_origin.dot(w), of_origin.dot(q));
+    let root = (b * b - a * c).max(0.0).sqrt();
+    let r = -(b + root.copysign(b));
+    let mut best = f64::NAN;
+    for at in [r / a, c / r] {
+        let p = q + w * at;
+        let is_front = (s.gradient(&p).dot(w) <= 0.0) == enters;
         if at.is_finite() && p.z >= 0.0 && (is_front || best.is_nan()) {
             best = at;
         }

@@ -6,6 +6,7 @@
 mod curve;
 pub(crate) mod foreign;
 mod part21;
+mod ruled;
 mod rules;
 mod shape;
 mod surface;

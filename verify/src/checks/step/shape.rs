@@ -1,7 +1,8 @@
 //! The solids of a STEP file: shells, faces, loops and edges with their curves and surfaces.
 
 use super::curve::{Placement, StepCurve, StepSpline};
-use super::part21::{Instances, StepInstance, StepReadError, StepValue};
+use super::part21::{Instances, StepEntity, StepInstance, StepReadError, StepValue};
+use super::ruled::RuledSurface;
 use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
 use std::collections::{HashMap, HashSet};
@@ -382,6 +383,11 @@ impl<'i> Reader<'i> {
     }
 
     fn surface(&self, id: u32) -> Result<StepSurface, StepReadError> {
+        if let Some(StepInstance { parts }) = self.instances.get(&id)
+            && parts.len() > 1
+        {
+            return self.ruled(id, parts);
+        }
         let surface = self.entity(id)?;
         let form = match surface.name {
             "PLANE" => SurfaceForm::Plane,
@@ -404,6 +410,71 @@ impl<'i> Reader<'i> {
         };
         let place = self.placement(surface.instance(1)?)?;
         Ok(StepSurface { place, form })
+    }
+
+    /// A rational B-spline surface between two ellipses.
+    fn ruled(&self, id: u32, parts: &'i [StepEntity]) -> Result<StepSurface, StepReadError> {
+        let expected = "a rational surface between two ellipses";
+        let wrong = StepReadError::Instance { id, expected };
+        let part = |name: &str| {
+            let part = parts.iter().find(|part| part.name == name);
+            part.map(|StepEntity { name, values }| Entity { id, name, values })
+        };
+        let names = [
+            "B_SPLINE_SURFACE",
+            "B_SPLINE_SURFACE_WITH_KNOTS",
+            "RATIONAL_B_SPLINE_SURFACE",
+        ];
+        let [Some(net), Some(with_knots), Some(rational)] = names.map(part) else {
+            return Err(wrong);
+        };
+        let pairs = |values: &'i [StepValue]| -> Result<Vec<[&'i StepValue; 2]>, StepReadError> {
+            let of = |row: &'i StepValue| match row {
+                StepValue::List(pair) if pair.len() == 2 => Ok([&pair[0], &pair[1]]),
+                _ => Err(net.wrong("rows of two")),
+            };
+            values.iter().map(of).collect()
+        };
+        let mut points = Vec::new();
+        for pair in pairs(net.list(2)?)? {
+            let [low, high] = pair.map(|value| match value {
+                StepValue::Instance(id) => self.point(*id),
+                _ => Err(net.wrong("points")),
+            });
+            points.push([low?, high?]);
+        }
+        let mut weights = Vec::new();
+        for pair in pairs(rational.list(0)?)? {
+            let number = |value: &StepValue| match value {
+                StepValue::Number(x) => *x,
+                _ => f64::NAN,
+            };
+            weights.push(pair.map(number));
+        }
+        let degrees = [net.number(0)?, net.number(1)?];
+        let counts = [with_knots.numbers(0)?, with_knots.numbers(1)?];
+        let (knots, heights) = (with_knots.numbers(2)?, with_knots.numbers(3)?);
+        let is_ours = degrees == [2.0, 1.0]
+            && counts == [vec![3.0, 2.0, 2.0, 2.0, 3.0], vec![2.0, 2.0]]
+            && knots.len() == counts[0].len();
+        let made = (|| {
+            let points = points.try_into().ok()?;
+            let weights = weights.try_into().ok()?;
+            let heights: [f64; 2] = heights.try_into().ok()?;
+            RuledSurface::new(&points, &weights, &knots, heights)
+        })();
+        match made.filter(|_| is_ours) {
+            Some(surface) => Ok(StepSurface {
+                place: Placement {
+                    origin: Point3::origin(),
+                    x: Vector3::x(),
+                    y: Vector3::y(),
+                    z: Vector3::z(),
+                },
+                form: SurfaceForm::Ruled(surface),
+            }),
+            None => Err(wrong),
+        }
     }
 
     /// The surface of revolution of a circle that starts on the axis and returns to it.

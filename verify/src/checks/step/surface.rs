@@ -6,6 +6,7 @@
 //! the sheets of tori from the south pole, so that P is zero there.
 
 use super::curve::Placement;
+use super::ruled::RuledSurface;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -42,6 +43,9 @@ pub enum SurfaceForm {
         /// The angle about the circle at the north pole.
         end: f64,
     },
+    /// A rational B-spline between two ellipses. Its u is the angle about them; only points are asked
+    /// for by the parameters of the spline.
+    Ruled(RuledSurface),
 }
 
 /// What is integrated over a face.
@@ -77,6 +81,7 @@ impl StepSurface {
             SurfaceForm::Torus { major, minor } | SurfaceForm::Sheet { major, minor, .. } => {
                 (rho - major).hypot(q.z) - minor
             }
+            SurfaceForm::Ruled(surface) => surface.distance(p),
         }
     }
 
@@ -101,6 +106,7 @@ impl StepSurface {
                 let v = v - end;
                 origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
             }
+            SurfaceForm::Ruled(surface) => surface.point([u, v]),
         }
     }
 
@@ -115,6 +121,10 @@ impl StepSurface {
                 false => Some(Pole::North),
             },
             SurfaceForm::Sheet { .. } if is_on_axis => match self.place.local(inner).z < 0.0 {
+                true => Some(Pole::South),
+                false => Some(Pole::North),
+            },
+            SurfaceForm::Ruled(surface) => match surface.apex(p, tolerance)? {
                 true => Some(Pole::South),
                 false => Some(Pole::North),
             },
@@ -137,11 +147,15 @@ impl StepSurface {
             SurfaceForm::Sphere { .. } => [angle, q.z.atan2(rho)],
             SurfaceForm::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
             SurfaceForm::Sheet { major, end, .. } => [angle, q.z.atan2(rho - major) + end],
+            SurfaceForm::Ruled(surface) => surface.parameters(p),
         }
     }
 
     /// The derivative of u along a curve that moves by `d` at a point.
     pub fn u_speed(&self, p: &Point3<f64>, d: &Vector3<f64>) -> f64 {
+        if let SurfaceForm::Ruled(surface) = &self.form {
+            return surface.angular_speed(p, d);
+        }
         let (q, d) = (self.place.local(p), self.place.turned(d));
         match self.form {
             SurfaceForm::Plane => d.x,
@@ -153,12 +167,12 @@ impl StepSurface {
     pub fn flow(&self, quantity: FaceQuantity, at: [f64; 2], about: &Point3<f64>) -> f64 {
         match quantity {
             FaceQuantity::Volume => self.volume_flow(at, about),
-            FaceQuantity::Area => self.area_flow(at[1]),
+            FaceQuantity::Area => self.area_flow(at),
         }
     }
 
     /// P of the area, whose F is the length of S_u × S_v.
-    fn area_flow(&self, v: f64) -> f64 {
+    fn area_flow(&self, [u, v]: [f64; 2]) -> f64 {
         match self.form {
             SurfaceForm::Plane => v,
             SurfaceForm::Cylinder { radius } => radius * v,
@@ -171,10 +185,14 @@ impl StepSurface {
             SurfaceForm::Sheet { major, minor, end } => {
                 minor * (major * v + minor * ((v - end).sin() + end.sin()))
             }
+            SurfaceForm::Ruled(surface) => surface.area_flow([u, v]),
         }
     }
 
     fn volume_flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
+        if let SurfaceForm::Ruled(surface) = &self.form {
+            return surface.volume_flow([u, v], about);
+        }
         let o = self.place.turned(&(self.place.origin - about));
         let (sin_u, cos_u) = u.sin_cos();
         let out = o.x * cos_u + o.y * sin_u;
@@ -196,6 +214,7 @@ impl StepSurface {
                     [v - end, -end].map(|v| torus_flow([major, minor], v, out, o.z));
                 here - south
             }
+            SurfaceForm::Ruled(_) => 0.0,
         };
         three / 3.0
     }
@@ -234,7 +253,7 @@ impl StepSurface {
             return 0.0;
         };
         if quantity == FaceQuantity::Area {
-            return self.area_flow(2.0 * end) * (to - from);
+            return self.area_flow([0.0, 2.0 * end]) * (to - from);
         }
         let o = self.place.turned(&(self.place.origin - about));
         let at = |out: f64| {

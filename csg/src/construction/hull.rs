@@ -6,6 +6,7 @@ use std::sync::Arc;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::Rational;
 
+use super::disc_hull::disc_hull;
 use super::leaves::of_union;
 use super::plane_faces::{corners, own_corners};
 use super::rounding::rounded_hull;
@@ -60,9 +61,11 @@ pub fn convex_hull(
         if let Some(primitive) = about_axis(&leaves, &frame)? {
             return Ok(exact(placed(builder, primitive, &frame)));
         }
-        if let Some(elements) = ends_of_all(&leaves, &frame)
-            && let Some(hull) = tapered_hull(builder, &elements, noise)?
-        {
+        if let Some(elements) = ends_of_all(&leaves, &frame) {
+            let hull = match tapered_hull(builder, &elements, noise)? {
+                Some(hull) => hull,
+                None => exact(disc_hull(builder, &elements)?),
+            };
             let solid = builder.moved(hull.solid, Transform::from_motion(&frame));
             return Ok(ConvexHull { solid, ..hull });
         }

@@ -9,6 +9,7 @@
 //! | `frames` | rotations along given directions |
 //! | `hull` | convex hulls |
 //! | `tapered_hull` | hulls of plates with rounded corners about common axes |
+//! | `disc_hull` | hulls of discs and points in parallel planes |
 //! | `rounding` | sums with a ball |
 //! | `minkowski` | other sums |
 //! | `affine` | images under affine maps |
@@ -16,6 +17,7 @@
 //! | `projection` | sections with the plane z = 0, and shadows on it |
 
 mod affine;
+mod disc_hull;
 mod evaluated;
 mod extent;
 mod frames;

@@ -34,6 +34,7 @@ pub use hull_elements::Disc;
 pub(crate) use hull_elements::HullElement;
 pub use offset::OffsetJoin;
 pub use outline::ContourCorner;
+pub(crate) use roots::{root, shortened};
 pub(crate) use scalar::direction;
 pub(crate) use set_operations::FigureExpression;
 pub use set_operations::FigureOperation;

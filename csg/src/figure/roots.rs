@@ -6,7 +6,7 @@ use premio_kernel::number::rational::{Rational, exact_sqrt, from_f64, to_f64};
 const ROOT_BITS: u32 = 256;
 
 /// The square root of a number that is not negative: exact, or with [`ROOT_BITS`] correct bits.
-pub(super) fn root(square: &Rational) -> Rational {
+pub(crate) fn root(square: &Rational) -> Rational {
     if let Some(exact) = exact_sqrt(square) {
         return exact;
     }
@@ -22,7 +22,7 @@ pub(super) fn root(square: &Rational) -> Rational {
 }
 
 /// A number rounded to about [`ROOT_BITS`] bits behind its leading one.
-pub(super) fn shortened(x: &Rational) -> Rational {
+pub(crate) fn shortened(x: &Rational) -> Rational {
     let leading = to_f64(x).abs().log2();
     let kept = i64::from(ROOT_BITS) + 32
         - if leading.is_finite() {

@@ -42,10 +42,10 @@ impl Shape<'_, '_> {
         let weights: Vec<String> = weights.collect();
         let knots: Vec<f64> = (0..5).map(|k| start + FRAC_PI_2 * f64::from(k)).collect();
         self.exchange.add(format_args!(
-            "(BOUNDED_SURFACE() B_SPLINE_SURFACE(2,1,({}),.UNSPECIFIED.,.T.,.F.,.F.)\
+            "(BOUNDED_SURFACE()B_SPLINE_SURFACE(2,1,({}),.UNSPECIFIED.,.T.,.F.,.F.)\
              B_SPLINE_SURFACE_WITH_KNOTS((3,2,2,2,3),(2,2),{},{},.UNSPECIFIED.)\
-             GEOMETRIC_REPRESENTATION_ITEM() RATIONAL_B_SPLINE_SURFACE(({}))\
-             REPRESENTATION_ITEM('') SURFACE())",
+             GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(({}))\
+             REPRESENTATION_ITEM('')SURFACE())",
             rows.join(","),
             Reals(&knots),
             Reals(&[low, high]),

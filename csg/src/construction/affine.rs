@@ -6,8 +6,10 @@ use premio_kernel::motion::{Motion, RationalMatrix};
 use premio_kernel::number::rational::{Rational, exact_sqrt};
 
 use super::ConstructionError;
+use super::oblique_prism::{ObliquePrism, oblique_frustum};
 use super::plane_faces::{own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
+use crate::figure::PlaneMap;
 use crate::polyhedron::{SpacePoint, dot};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
@@ -35,6 +37,28 @@ impl AffineMap {
         }
     }
 
+    /// The map that leaves every point where it is.
+    pub(crate) fn identity() -> Self {
+        let one = [Rational::ONE, Rational::ONE, Rational::ONE];
+        Self::scale(&one)
+    }
+
+    /// Whether it leaves every point where it is.
+    pub(super) fn is_identity(&self) -> bool {
+        *self == Self::identity()
+    }
+
+    /// The image of a point.
+    pub(super) fn point(&self, p: &SpacePoint) -> SpacePoint {
+        let turned = self.vector(p);
+        std::array::from_fn(|i| &turned[i] + &self.offset[i])
+    }
+
+    /// The image of a vector.
+    pub(super) fn vector(&self, v: &SpacePoint) -> SpacePoint {
+        self.matrix.each_ref().map(|row| dot(row, v))
+    }
+
     /// This map after a motion.
     fn after(&self, motion: &Motion) -> Self {
         let turn = motion.rotation_matrix();
@@ -52,11 +76,11 @@ impl AffineMap {
 
 /// The image of a solid under an affine map.
 ///
-/// Plane faces stay plane. A cylinder, a frustum or a prism may be stretched along its axis, and
-/// anything scaled equally in all directions.
+/// Plane faces stay plane, and cylinders and cones become elliptic ones. Spheres, tori and other
+/// revolutions may be scaled equally in all directions.
 ///
 /// # Errors
-/// The map makes another surface of a primitive, or makes it flat.
+/// The map makes another surface of a sphere or a revolution, or makes a solid flat.
 pub fn mapped(
     builder: &mut Builder,
     solid: SolidId,
@@ -95,11 +119,58 @@ fn of_leaf(
         return Ok(builder.moved(part, Transform::from_motion(&stretch.motion)));
     }
     if own_corners(&placed.primitive).is_none() {
-        return Err(ConstructionError::Elliptic);
+        return of_round_leaf(builder, &placed.primitive, &whole);
     }
     let image = polyhedron(&placed.primitive)?.mapped(&whole.matrix, &whole.offset)?;
     let polyhedron = Arc::new(image);
     Ok(builder.primitive(Primitive::Polyhedron { polyhedron }))
+}
+
+/// The image of a primitive with cylinders and cones.
+fn of_round_leaf(
+    builder: &mut Builder,
+    primitive: &Primitive,
+    map: &AffineMap,
+) -> Result<SolidId, ConstructionError> {
+    let zero = || Rational::ZERO;
+    let frustum = |builder: &mut Builder, base: &Rational, top: &Rational, ends: [&Rational; 2]| {
+        let [from, to] = ends;
+        let axes = [
+            map.vector(&[base.clone(), zero(), zero()]),
+            map.vector(&[zero(), base.clone(), zero()]),
+            map.vector(&[zero(), zero(), to - from]),
+        ];
+        let origin = map.point(&[zero(), zero(), from.clone()]);
+        oblique_frustum(builder, axes, top / base, origin)
+    };
+    match primitive {
+        Primitive::Cylinder { radius, height } => {
+            frustum(builder, radius, radius, [&Rational::ZERO, height])
+        }
+        // The base is not an apex.
+        Primitive::Frustum { base, top, height } if base.is_zero() => {
+            frustum(builder, top, base, [height, &Rational::ZERO])
+        }
+        Primitive::Frustum { base, top, height } => {
+            frustum(builder, base, top, [&Rational::ZERO, height])
+        }
+        Primitive::ObliqueFrustum { frustum } => {
+            let axes = frustum.axes().each_ref().map(|axis| map.vector(axis));
+            oblique_frustum(builder, axes, frustum.top().clone(), map.offset.clone())
+        }
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => ObliquePrism {
+            plane: &PlaneMap::identity(),
+            height,
+            top,
+            space: map,
+        }
+        .solid(builder, figure),
+        _ => Err(ConstructionError::Elliptic),
+    }
 }
 
 /// A map that scales the axes by factors before a motion.

@@ -7,6 +7,7 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::rational::{Rational, exact_sqrt};
 
 use crate::polyhedron::{SpacePoint, dot};
+use crate::primitive::{Primitive, PrimitiveError};
 
 /// The square root of a number that is not negative: exact, or rounded to 106 bits.
 pub(super) fn root(square: &Rational) -> Rational {
@@ -38,6 +39,30 @@ pub(super) fn along(origin: &SpacePoint, direction: &SpacePoint) -> Motion {
     };
     let turn = Motion::from_quaternion(quaternion).unwrap_or_default();
     turn.then(&Motion::translation(origin.clone()))
+}
+
+/// The primitive with given axes, and its placement, if it is a cylinder or a right frustum whose
+/// sizes are rational: of equal radii across the axis.
+pub(super) fn right_frustum(
+    [x, y, z]: &[SpacePoint; 3],
+    top: &Rational,
+) -> Option<(Result<Primitive, PrimitiveError>, Motion)> {
+    let square = dot(x, x);
+    let is_right = [(x, y), (y, z), (z, x)]
+        .iter()
+        .all(|(u, v)| dot(u, v).is_zero());
+    if !is_right || dot(y, y) != square {
+        return None;
+    }
+    let (radius, height) = (exact_sqrt(&square)?, exact_sqrt(&dot(z, z))?);
+    let turn = |first: &SpacePoint, second: &SpacePoint| {
+        let row = |i: usize| [&first[i] / &radius, &second[i] / &radius, &z[i] / &height];
+        let zero = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
+        Motion::from_matrix([row(0), row(1), row(2)], zero)
+    };
+    let motion = turn(x, y).or_else(|| turn(y, x))?;
+    let widest = &radius * top;
+    Some((Primitive::frustum(radius, widest, height), motion))
 }
 
 /// Whether a number needs no rounding.

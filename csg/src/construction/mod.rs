@@ -13,6 +13,7 @@
 //! | `rounding` | sums with a ball |
 //! | `minkowski` | other sums |
 //! | `affine` | images under affine maps |
+//! | `oblique_prism` | prisms with elliptic walls |
 //! | `extent` | sizes along the axes |
 //! | `projection` | sections with the plane z = 0, and shadows on it |
 
@@ -24,6 +25,7 @@ mod frames;
 mod hull;
 mod leaves;
 mod minkowski;
+mod oblique_prism;
 mod plane_faces;
 mod projection;
 mod rounding;
@@ -33,6 +35,7 @@ pub use affine::{AffineMap, mapped};
 pub use extent::extent;
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
+pub use oblique_prism::ObliquePrism;
 pub use projection::{section, shadow};
 pub use tapered_hull::ConvexHull;
 

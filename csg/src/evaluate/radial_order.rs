@@ -188,12 +188,18 @@ impl<N: Float> Spot<'_, N> {
     }
 
     /// Whether a sheet lies counterclockwise of another that leaves in nearly the same direction.
-    /// They are compared at the resolution's distance. If rounding hides the order there and the
-    /// two coincide within the resolution, they are compared farther out.
+    /// They are compared at the resolution's distance. If rounding hides the order there, they are
+    /// compared farther out: as far as the angle between them decides, or if they coincide within the
+    /// resolution, over half their length.
     fn lies_beyond(&self, [a, b]: [&HalfSheet<N>; 2], is_one: bool) -> Option<bool> {
         let [first, second] = [a, b].map(|s| self.surface(self.piece.carriers[s.carrier]));
         let (reach, out) = (self.piece.reach(self.arrangement), b.beyond.sign::<N>());
-        let farthest = if is_one { N::HALF * reach } else { N::ZERO };
+        let sine = a.direction.cross(&b.direction).length();
+        let decided_by_angle = sine / (N::from_f64(4.0) * (a.bend - b.bend).abs());
+        let farthest = match is_one {
+            true => N::HALF * reach,
+            false => (N::HALF * reach).min(decided_by_angle),
+        };
         let offset = |step: N| {
             let q = self.point + a.direction * step;
             let q = q - first.normal(&q) * first.distance(&q);

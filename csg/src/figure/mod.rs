@@ -170,13 +170,13 @@ impl PlaneMap {
         self.factor().is_some_and(|factor| factor.is_one())
     }
 
-    fn determinant(&self) -> Rational {
+    pub(crate) fn determinant(&self) -> Rational {
         let [[a, b], [c, d]] = &self.matrix;
         a * d - b * c
     }
 
     /// The factor of all lengths; `None` if it depends on the direction, or has no exact value.
-    fn factor(&self) -> Option<Rational> {
+    pub(crate) fn factor(&self) -> Option<Rational> {
         let [[a, b], [c, d]] = &self.matrix;
         let alike = (a == d && *b == -c) || (*a == -d && b == c);
         let square = a * a + b * b;
@@ -206,6 +206,20 @@ impl Figure {
         let ends = ends.chain([self.edges.len()]);
         let starts = self.contours.iter().copied();
         starts.zip(ends).map(|(from, to)| &self.edges[from..to])
+    }
+
+    /// The figures that its contours bound: those around material, and the holes.
+    pub(crate) fn contour_figures(&self) -> [Vec<Self>; 2] {
+        let (mut outer, mut holes) = (Vec::new(), Vec::new());
+        for contour in self.contours() {
+            if contour_area(contour) > 0.0 {
+                outer.push(Self::of_contour(contour.to_vec()));
+            } else {
+                let backwards = contour.iter().rev().map(FigureEdge::reversed);
+                holes.push(Self::of_contour(backwards.collect()));
+            }
+        }
+        [outer, holes]
     }
 
     /// Whether all edges are line segments.

@@ -6,9 +6,11 @@ use premio_kernel::number::rational::Rational;
 
 use super::error::SpannedError;
 use super::number::bad_length;
+use super::refusal::construction_error;
 use super::region::{Region, RegionFigure, bad_figure};
 use crate::builder::{Builder, SolidId};
-use crate::figure::{Figure, FigureOperation, FigurePoint};
+use crate::construction::{AffineMap, ObliquePrism};
+use crate::figure::{Figure, FigureOperation, FigurePoint, PlaneMap};
 use crate::primitive::{Primitive, PrimitiveError, RevolutionAngle};
 use crate::transform::Transform;
 use crate::tree::Operation;
@@ -51,6 +53,10 @@ impl Extrusion<'_> {
             let solid = builder.moved(solid, part.moves);
             return Ok(builder.moved(solid, moves.clone()));
         }
+        let is_flat = figure.map.determinant().is_zero();
+        if !figure.base.is_polygon() && !is_flat && figure.map.factor().is_none() {
+            return self.oblique(builder, &figure.base, &figure.map, span);
+        }
         let placed = figure.figure()?;
         if factor.is_one() {
             let part = extruded(&placed, self.height).map_err(wrong)?;
@@ -61,9 +67,35 @@ impl Extrusion<'_> {
             Some(radius) => {
                 Primitive::frustum(radius.clone(), radius * factor, self.height.clone())
             }
-            None => Primitive::scaled_prism(placed, self.height.clone(), factor.clone()),
+            None => {
+                let figure = placed.clone();
+                Primitive::scaled_prism(figure, self.height.clone(), factor.clone())
+            }
         };
-        Ok(builder.primitive(scaled.map_err(wrong)?))
+        match scaled {
+            Err(PrimitiveError::ObliqueArc) => {
+                self.oblique(builder, &placed, &PlaneMap::identity(), span)
+            }
+            made => Ok(builder.primitive(made.map_err(wrong)?)),
+        }
+    }
+
+    /// The solid of a figure whose arcs become ellipses, or lead to oblique cones.
+    fn oblique(
+        &self,
+        builder: &mut Builder,
+        figure: &Figure,
+        map: &PlaneMap,
+        span: &Range<usize>,
+    ) -> Result<SolidId, SpannedError> {
+        let prism = ObliquePrism {
+            plane: map,
+            height: self.height,
+            top: self.top,
+            space: &AffineMap::identity(),
+        };
+        let solid = prism.solid(builder, figure);
+        solid.map_err(|error| construction_error(&error, span))
     }
 }
 

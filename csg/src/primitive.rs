@@ -334,7 +334,10 @@ impl Primitive {
     }
 
     /// Whether a prism may have this height and factor at the height.
-    pub(crate) fn check_prism(height: &Rational, top: &Rational) -> Result<(), PrimitiveError> {
+    ///
+    /// # Errors
+    /// The height is not greater than zero, or the factor is negative.
+    pub fn check_prism(height: &Rational, top: &Rational) -> Result<(), PrimitiveError> {
         positive(height, Dimension::Height)?;
         match *top < Rational::ZERO {
             true => Err(PrimitiveError::Negative(Dimension::Top)),

@@ -1,24 +1,27 @@
 //! Solids as expressions: primitives, set operations and motions.
 
 mod description;
+mod motions;
 mod operators;
 mod primitives;
 
-pub use primitives::{block, cone, cylinder, frustum, polyhedron, sphere, torus, wedge};
+pub use primitives::{
+    block, cone, cylinder, frustum, oblique_frustum, polyhedron, sphere, torus, wedge,
+};
 
 use crate::number::{ExactNumber, NumberError};
 use crate::solid::Solid;
 use crate::{Error, Rational, Result};
 use description::Description;
 use premio_csg::builder::{Builder, SolidId};
-use premio_csg::construction::{ConstructionError, convex_hull};
+use premio_csg::construction::{AffineMap, ConstructionError, convex_hull, mapped, scaled_prism};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
-use premio_csg::figure::FigureError;
+use premio_csg::figure::{Figure, FigureError};
 use premio_csg::polyhedron::PolyhedronError;
 use premio_csg::primitive::{Primitive, PrimitiveError};
 use premio_csg::reader::{Format, Note};
 use premio_csg::recover::recovered;
-use premio_csg::transform::{Transform, TransformStep};
+use premio_csg::transform::Transform;
 use premio_csg::tree::{Operation, Tree};
 use premio_csg::writer;
 use premio_kernel::motion::MotionError;
@@ -97,6 +100,9 @@ enum Node {
     Moved(Arc<Node>, Transform),
     MirroredY(Arc<Node>),
     Scaled(Arc<Node>, Rational),
+    Stretched(Arc<Node>, [Rational; 3]),
+    /// A prism by its figure, its height and the factor there.
+    Prism(Arc<Figure>, [Rational; 2]),
     Described(Box<Description>),
 }
 
@@ -110,20 +116,24 @@ impl Node {
     fn children(&self) -> &[Arc<Node>] {
         match self {
             Self::Operation(_, children) | Self::Hull(children) => children,
-            Self::Moved(child, _) | Self::MirroredY(child) | Self::Scaled(child, _) => {
-                std::slice::from_ref(child)
-            }
-            Self::Empty | Self::Leaf(_) | Self::Described(_) => &[],
+            Self::Moved(child, _)
+            | Self::MirroredY(child)
+            | Self::Scaled(child, _)
+            | Self::Stretched(child, _) => std::slice::from_ref(child),
+            Self::Empty | Self::Leaf(_) | Self::Prism(..) | Self::Described(_) => &[],
         }
     }
 
     fn take_children(&mut self) -> Vec<Arc<Node>> {
         match self {
             Self::Operation(_, children) | Self::Hull(children) => std::mem::take(children),
-            Self::Moved(child, _) | Self::MirroredY(child) | Self::Scaled(child, _) => {
+            Self::Moved(child, _)
+            | Self::MirroredY(child)
+            | Self::Scaled(child, _)
+            | Self::Stretched(child, _) => {
                 vec![std::mem::replace(child, Arc::new(Self::Empty))]
             }
-            Self::Empty | Self::Leaf(_) | Self::Described(_) => Vec::new(),
+            Self::Empty | Self::Leaf(_) | Self::Prism(..) | Self::Described(_) => Vec::new(),
         }
     }
 }
@@ -180,6 +190,12 @@ impl Expression {
         Self(primitive.map(|primitive| Arc::new(Node::Leaf(primitive))))
     }
 
+    /// A figure extruded along z, and scaled about z by the factor `top` on the way.
+    pub(crate) fn scaled_prism(figure: Arc<Figure>, height: Rational, top: Rational) -> Self {
+        let checked = Primitive::check_prism(&height, &top).map_err(ExpressionError::from);
+        Self(checked.map(|()| Arc::new(Node::Prism(figure, [height, top]))))
+    }
+
     /// The solid without any points.
     ///
     /// # Examples
@@ -214,7 +230,7 @@ impl Expression {
     }
 
     /// The convex hull of several expressions, where its faces are on planes, cylinders, cones,
-    /// spheres and tori.
+    /// spheres and tori. Cylinders, cones and prisms with parallel axes may have any place and size.
     ///
     /// # Examples
     ///
@@ -235,146 +251,6 @@ impl Expression {
 
     fn map(self, wrap: impl FnOnce(Arc<Node>) -> Result<Node, ExpressionError>) -> Self {
         Self(self.0.and_then(wrap).map(Arc::new))
-    }
-
-    fn step(self, step: Result<TransformStep, ExpressionError>) -> Self {
-        self.map(|node| {
-            let mut transform = Transform::new();
-            transform.push(step?)?;
-            Ok(Node::Moved(node, transform))
-        })
-    }
-
-    /// Moves the solid along x, y and z.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(1, 1, 1).translate(["1/3", "0", "-2"]).evaluate()?;
-    /// assert_eq!(solid.bounds().min, [1.0 / 3.0, 0.0, -2.0]);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn translate<N: Into<ExactNumber>>(self, by: [N; 3]) -> Self {
-        self.step(vector(by).map(TransformStep::Shift))
-    }
-
-    /// Rotates the solid about the x axis, by degrees, right-handed.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(1, 2, 3).rotate_x(90).evaluate()?;
-    /// assert_eq!(solid.bounds().max, [1.0, 0.0, 2.0]);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rotate_x(self, degrees: impl Into<ExactNumber>) -> Self {
-        self.rotate([1, 0, 0], degrees)
-    }
-
-    /// Rotates the solid about the y axis, by degrees, right-handed.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(1, 2, 3).rotate_y(90).evaluate()?;
-    /// assert_eq!(solid.bounds().max, [3.0, 2.0, 0.0]);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rotate_y(self, degrees: impl Into<ExactNumber>) -> Self {
-        self.rotate([0, 1, 0], degrees)
-    }
-
-    /// Rotates the solid about the z axis, by degrees, right-handed.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = block(1, 2, 3).rotate_z(90).evaluate()?;
-    /// assert_eq!(solid.bounds().max, [0.0, 1.0, 3.0]);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rotate_z(self, degrees: impl Into<ExactNumber>) -> Self {
-        self.rotate([0, 0, 1], degrees)
-    }
-
-    /// Rotates the solid about an axis through the origin, by degrees, right-handed. The axis may
-    /// have any length but zero.
-    ///
-    /// The motion is exactly orthogonal. Where the angle has no rational sine and cosine, a
-    /// rational rotation next to it is taken, as by the readers of descriptions.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// // A third of a turn about the diagonal brings x to y, y to z and z to x.
-    /// let solid = block(1, 2, 3).rotate([1, 1, 1], 120).evaluate()?;
-    /// assert!((solid.bounds().max[0] - 3.0).abs() < 1e-12);
-    /// assert!(block(1, 2, 3).rotate([0, 0, 0], 90).evaluate().is_err());
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rotate<N: Into<ExactNumber>>(
-        self,
-        axis: [N; 3],
-        degrees: impl Into<ExactNumber>,
-    ) -> Self {
-        let turn = || {
-            let (axis, degrees) = (vector(axis)?, degrees.into().value()?);
-            Ok(TransformStep::Turn { axis, degrees })
-        };
-        self.step(turn())
-    }
-
-    /// The image of the solid in the plane y = 0.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let solid = wedge(1, 2, 3).mirror_y().evaluate()?;
-    /// assert_eq!(solid.bounds().min, [0.0, -2.0, 0.0]);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn mirror_y(self) -> Self {
-        self.map(|node| Ok(Node::MirroredY(node)))
-    }
-
-    /// The solid with all lengths multiplied by a factor above zero, about the origin.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use premio::prelude::*;
-    ///
-    /// let inches = block(1, 1, 1).scale("25.4").evaluate()?;
-    /// assert!((inches.volume() - 16387.064).abs() < 1e-9);
-    /// # Ok::<(), premio::Error>(())
-    /// ```
-    #[must_use]
-    pub fn scale(self, factor: impl Into<ExactNumber>) -> Self {
-        self.map(|node| {
-            let factor = factor.into().value()?;
-            match factor > Rational::ZERO {
-                true => Ok(Node::Scaled(node, factor)),
-                false => Err(ExpressionError::Factor),
-            }
-        })
     }
 
     /// The notes of the reader on all descriptions that the expression was made from.
@@ -435,6 +311,14 @@ impl Expression {
                 Node::Moved(inner, transform) => builder.moved(child(inner), transform.clone()),
                 Node::MirroredY(inner) => builder.mirrored_y(child(inner)),
                 Node::Scaled(inner, factor) => builder.scaled(child(inner), factor.clone()),
+                Node::Stretched(inner, factors) => {
+                    let image = mapped(&mut builder, child(inner), &AffineMap::scale(factors));
+                    image.map_err(ExpressionError::Construction)?
+                }
+                Node::Prism(figure, [height, top]) => {
+                    let prism = scaled_prism(&mut builder, figure, height, top);
+                    prism.map_err(ExpressionError::Construction)?
+                }
                 Node::Described(d) => builder.import(&d.program.builder, d.program.part)?,
             };
             built.insert(Arc::as_ptr(node), last);

@@ -267,8 +267,8 @@ impl Sketch {
         self.extrude_scaled(height, 1)
     }
 
-    /// The same, scaled about the z axis by a factor on the way up. Arcs have to be centred on the
-    /// axis.
+    /// The same, scaled about the z axis by a factor on the way up. Arcs beside the axis lead to elliptic
+    /// cones.
     ///
     /// # Examples
     ///
@@ -277,6 +277,8 @@ impl Sketch {
     ///
     /// let pyramid = rectangle(6, 6).translate([-3, -3]).extrude_scaled(4, 0).evaluate()?;
     /// assert!((pyramid.volume() - 48.0).abs() < 1e-12);
+    /// let beside = disc(1).translate([3, 0]).extrude_scaled(2, 0).evaluate()?;
+    /// assert!((beside.volume() - 2.0 / 3.0 * std::f64::consts::PI).abs() < 1e-12);
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn extrude_scaled(
@@ -285,10 +287,11 @@ impl Sketch {
         top: impl Into<ExactNumber>,
     ) -> Expression {
         let lengths = numbers([height.into(), top.into()]);
-        self.swept(|figure| {
-            let [height, top] = lengths?;
-            Ok(Primitive::scaled_prism(figure, height, top)?)
-        })
+        match (self.0, lengths) {
+            (Ok(Some(figure)), Ok([height, top])) => Expression::scaled_prism(figure, height, top),
+            (Ok(None), Ok(_)) => Expression::empty(),
+            (Err(error), _) | (_, Err(error)) => Expression::primitive(Err(error)),
+        }
     }
 
     /// The figure revolved about the z axis by a whole turn: x is the distance from the axis, y

@@ -12,12 +12,13 @@
 //! | `disc_hull` | hulls of discs and points in parallel planes |
 //! | `rounding` | sums with a ball |
 //! | `minkowski` | other sums |
-//! | `affine` | images under affine maps |
+//! | `affine_map`, `affine` | affine maps, and images under them |
 //! | `oblique_prism` | prisms with elliptic walls |
 //! | `extent` | sizes along the axes |
 //! | `projection` | sections with the plane z = 0, and shadows on it |
 
 mod affine;
+mod affine_map;
 mod disc_hull;
 mod evaluated;
 mod extent;
@@ -31,11 +32,12 @@ mod projection;
 mod rounding;
 mod tapered_hull;
 
-pub use affine::{AffineMap, mapped};
+pub use affine::mapped;
+pub use affine_map::AffineMap;
 pub use extent::extent;
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
-pub use oblique_prism::ObliquePrism;
+pub use oblique_prism::{ObliquePrism, scaled_prism};
 pub use projection::{section, shadow};
 pub use tapered_hull::ConvexHull;
 
@@ -57,9 +59,12 @@ pub enum ConstructionError {
     /// The sum has other faces, or is not supported.
     #[error("a Minkowski sum of these shapes")]
     NoSum,
-    /// The map makes ellipses of circles.
-    #[error("a map that changes the shape of circles")]
+    /// The map makes ellipsoids of spheres, or other surfaces of revolutions.
+    #[error("a map that changes the shape of spheres or revolutions")]
     Elliptic,
+    /// The figure of a prism with elliptic walls has arcs whose chords cross other edges.
+    #[error("a prism with elliptic walls of a figure whose chords cross its edges")]
+    CrossedChords,
     /// The section or the shadow has other edges than segments and arcs, or is not supported.
     #[error("a {0} of these shapes")]
     NoProjection(&'static str),
@@ -85,7 +90,9 @@ impl ConstructionError {
     pub fn is_empty(&self) -> bool {
         matches!(
             self,
-            Self::Figure(FigureError::Empty) | Self::Polyhedron(PolyhedronError::Empty)
+            Self::Figure(FigureError::Empty)
+                | Self::Polyhedron(PolyhedronError::Empty)
+                | Self::Primitive(PrimitiveError::Flat)
         )
     }
 }

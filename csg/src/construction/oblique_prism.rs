@@ -10,7 +10,7 @@ use std::sync::Arc;
 use premio_kernel::number::predicates::Compare;
 use premio_kernel::number::rational::{Rational, to_f64};
 
-use super::affine::AffineMap;
+use super::affine_map::AffineMap;
 use super::plane_faces::polyhedron;
 use super::{ConstructionError, frames};
 use crate::builder::{Builder, SolidId};
@@ -19,7 +19,7 @@ use crate::figure::{
     PlaneMap,
 };
 use crate::polyhedron::SpacePoint;
-use crate::primitive::Primitive;
+use crate::primitive::{Primitive, PrimitiveError};
 use crate::transform::Transform;
 use crate::tree::Operation;
 
@@ -72,7 +72,7 @@ impl ObliquePrism<'_> {
             .any(|own| holes.iter().any(|hole| is_inside(own, hole)))
         {
             // An island in a hole.
-            return Err(ConstructionError::Elliptic);
+            return Err(ConstructionError::CrossedChords);
         }
         let mut solids = |contours: &[Figure]| -> Result<SolidId, ConstructionError> {
             let each = contours.iter().map(|own| self.contour(builder, own));
@@ -102,7 +102,7 @@ impl ObliquePrism<'_> {
         let segments = own.edges().iter().filter_map(segment);
         let segments: Vec<Segment> = segments.collect::<Result<_, _>>()?;
         if !are_the_contour(own, polygon.as_ref(), &segments)? {
-            return Err(ConstructionError::Elliptic);
+            return Err(ConstructionError::CrossedChords);
         }
         let mut added = Vec::new();
         let mut removed = Vec::new();
@@ -149,6 +149,30 @@ impl ObliquePrism<'_> {
         let image = polyhedron(&prism)?.mapped(&self.space.matrix, &self.space.offset)?;
         let polyhedron = Arc::new(image);
         Ok(builder.primitive(Primitive::Polyhedron { polyhedron }))
+    }
+}
+
+/// A prism of a figure that is scaled about z on the way up: one primitive, unless arcs beside the axis
+/// lead to elliptic cones.
+///
+/// # Errors
+/// The height is not greater than zero, the factor is negative, or the chords of the figure's arcs
+/// cross other edges.
+pub fn scaled_prism(
+    builder: &mut Builder,
+    figure: &Figure,
+    height: &Rational,
+    top: &Rational,
+) -> Result<SolidId, ConstructionError> {
+    match Primitive::scaled_prism(figure.clone(), height.clone(), top.clone()) {
+        Err(PrimitiveError::ObliqueArc) => ObliquePrism {
+            plane: &PlaneMap::identity(),
+            height,
+            top,
+            space: &AffineMap::identity(),
+        }
+        .solid(builder, figure),
+        made => Ok(builder.primitive(made?)),
     }
 }
 

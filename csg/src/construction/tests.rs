@@ -3,7 +3,7 @@
 use super::*;
 use crate::builder::{Builder, SolidId};
 use crate::evaluate::{EvaluationOptions, evaluate};
-use crate::figure::{Figure, OffsetJoin};
+use crate::figure::{Figure, FigureOperation, OffsetJoin, PlaneMap};
 use crate::primitive::Primitive;
 use crate::ray_casting::RayOracle;
 use crate::transform::{Transform, TransformStep};
@@ -142,8 +142,34 @@ fn cylinders_between_two_planes_have_a_slot_as_hull() {
     let mut b = Builder::new();
     let one = cylinder(&mut b, 2, 3, [0, 0, 1]);
     let two = cylinder(&mut b, 2, 4, [9, 0, 1]);
-    let refused = convex_hull(&mut b, &[one, two], 0.0);
-    assert_eq!(refused, Err(ConstructionError::NoHull));
+    let hull = convex_hull(&mut b, &[one, two], 0.0).unwrap().solid;
+    // Above the lower end, a section is a slot of length 9 (1 - t).
+    let volume = 3.0 * (36.0 + 4.0 * PI) + 18.0 + 4.0 * PI;
+    let surfaces = ["cylinder", "elliptic cylinder", "plane"];
+    assert_eq!(check(&b, hull, volume), surfaces);
+}
+
+/// A disc and a point beside it: a cone whose height is that of the point, with an apex that is not
+/// over the disc. A section at the height t is a disc of the radius 1 - t.
+#[test]
+fn a_disc_and_a_point_have_an_oblique_cone_as_hull() {
+    let mut b = Builder::new();
+    let plate = cylinder(&mut b, 3, 1, [0, 0, 0]);
+    let tip = b.primitive(Primitive::frustum(n(2), n(0), n(6)).unwrap());
+    let tip = b.moved(tip, Transform::shift([5, 0, 0].map(n)));
+    let hull = convex_hull(&mut b, &[plate, tip], 0.0).unwrap().solid;
+    let tree = b.finish(hull).unwrap();
+    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let rays = RayOracle::new(&tree).volume(1 << 15, 1);
+    assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
+    // The disc of the plate's top lies in the cone over its bottom, where the apex is high enough.
+    let apex = b.primitive(Primitive::block([1, 1, 1].map(n)).unwrap());
+    let apex = b.moved(apex, Transform::shift([9, 0, 20].map(n)));
+    let hull = convex_hull(&mut b, &[plate, apex], 0.0).unwrap().solid;
+    let tree = b.finish(hull).unwrap();
+    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let rays = RayOracle::new(&tree).volume(1 << 15, 1);
+    assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
 }
 
 #[test]
@@ -227,8 +253,13 @@ fn plane_faces_take_any_scale() {
     let post = cylinder(&mut b, 1, 2, [0, 0, 0]);
     let long = mapped(&mut b, post, &AffineMap::scale(&[2, 2, 5].map(n))).unwrap();
     assert_eq!(check(&b, long, 40.0 * PI), ["cylinder", "plane"]);
-    let oval = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 1].map(n)));
-    assert_eq!(oval, Err(ConstructionError::Elliptic));
+    let oval = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 1].map(n))).unwrap();
+    assert_eq!(check(&b, oval, 4.0 * PI), ["elliptic cylinder", "plane"]);
+    let unit = ball(&mut b, 1, [0, 0, 0]);
+    let egg = mapped(&mut b, unit, &AffineMap::scale(&[2, 1, 1].map(n)));
+    assert_eq!(egg, Err(ConstructionError::Elliptic));
+    let flat = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 0].map(n)));
+    assert!(flat.is_err_and(|error| error.is_empty()));
     let flat = mapped(&mut b, part, &AffineMap::scale(&[2, 1, 0].map(n)));
     assert!(flat.is_err_and(|error| error.is_empty()));
 }
@@ -389,11 +420,67 @@ fn rounded_plates_have_cones_between_them() {
         let surfaces = ["cone", "cylinder", "plane"];
         assert_eq!(check(&b, hull.solid, tapered + straight), surfaces);
     }
-    // Other axes: a hull with faces of other kinds.
+    // Other axes: oblique cones. Each section is moved, and has the same area.
     let mut b = Builder::new();
     let low = rounded_plate(&mut b, 1, 1, 0);
     let high = rounded_plate(&mut b, 3, 1, 4);
     let high = b.moved(high, Transform::shift([1, 0, 0].map(n)));
-    let refused = convex_hull(&mut b, &[low, high], 0.0);
-    assert_eq!(refused, Err(ConstructionError::NoHull));
+    let hull = convex_hull(&mut b, &[low, high], 0.0).unwrap().solid;
+    let volume = 4.0 * 32.0 + 24.0 * 8.0 + PI * 52.0 / 3.0 + 32.0 + 72.0 + 9.0 * PI;
+    let surfaces = ["cylinder", "elliptic cone", "plane"];
+    assert_eq!(check(&b, hull, volume), surfaces);
+}
+
+/// A figure with an outline of arcs, a hole and a notch, stretched and sheared: its volume is the
+/// area of the figure times the determinant.
+#[test]
+fn stretched_figures_have_elliptic_walls() {
+    let mut b = Builder::new();
+    let core = Figure::rectangle(&[8, 4].map(n)).unwrap();
+    let outline = core.offset(&n(2), OffsetJoin::Round).unwrap();
+    let disc = |radius: i32, at: [i32; 2]| {
+        let place = PlaneMap {
+            offset: at.map(n),
+            ..PlaneMap::identity()
+        };
+        Figure::disc(&n(radius)).unwrap().mapped(&place).unwrap()
+    };
+    let cut = [disc(1, [3, 2]), disc(2, [10, 2])];
+    let all = [&outline, &cut[0], &cut[1]];
+    let figure = Figure::combined(FigureOperation::Difference, &all).unwrap();
+    let area = figure.area();
+    let prism = b.primitive(Primitive::prism(figure, n(3)).unwrap());
+    let map = AffineMap {
+        matrix: [[2, 0, 1], [1, 1, 0], [0, 0, 1]].map(|row| row.map(n)),
+        offset: [5, -7, 1].map(n),
+    };
+    let image = mapped(&mut b, prism, &map).unwrap();
+    // The determinant is 2.
+    assert_eq!(check(&b, image, 6.0 * area), ["elliptic cylinder", "plane"]);
+}
+
+/// A rounded rectangle scaled about a point beside it: the volume is that of a pyramid without its
+/// upper part.
+#[test]
+fn scaled_figures_have_oblique_cones() {
+    let mut b = Builder::new();
+    let figure = Figure::rectangle(&[8, 4].map(n)).unwrap();
+    let figure = figure.offset(&n(1), OffsetJoin::Round).unwrap();
+    let area = figure.area();
+    for (top, part) in [
+        (n(0), 1.0 / 3.0),
+        (n(1) / n(2), 7.0 / 12.0),
+        (n(2), 7.0 / 3.0),
+    ] {
+        let prism = ObliquePrism {
+            plane: &PlaneMap::identity(),
+            height: &n(6),
+            top: &top,
+            space: &AffineMap::identity(),
+        };
+        let solid = prism.solid(&mut b, &figure).unwrap();
+        let known = check(&b, solid, 6.0 * area * part);
+        // The corner next to the axis has a right cone.
+        assert_eq!(known, ["cone", "elliptic cone", "plane"], "{top}");
+    }
 }

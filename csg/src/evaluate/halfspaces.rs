@@ -8,7 +8,7 @@ use super::region::WalledRegion;
 use super::section::{Section, SectionMap};
 use super::walls::{self, Wall, WallKind};
 use crate::polyhedron::Polyhedron;
-use crate::primitive::{ObliqueFrustum, Primitive};
+use crate::primitive::Primitive;
 use crate::tree::{NodeId, PlacedPrimitive, Tree};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
@@ -351,7 +351,12 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
             let w = N::nearest(&(major + minor));
             add(Surface::Torus(t), [-w, -w, -b], [w, w, b]);
         }
-        Primitive::ObliqueFrustum { frustum } => add_oblique(&pose, frustum, &mut add),
+        Primitive::ObliqueFrustum { frustum } => {
+            for side in oblique_sides::sides(frustum, placed) {
+                let [lo, hi] = side.bounds.map(|corner| corner.map(N::from_f64));
+                add(side.surface, lo, hi);
+            }
+        }
         Primitive::Prism { .. } | Primitive::Revolution { .. } => {
             return sectioned(leaf, &pose);
         }
@@ -502,26 +507,6 @@ fn faceted<N: Float>(leaf: NodeId, pose: &Pose<'_, N>, polyhedron: &Polyhedron) 
         sides,
         region: Some(WalledRegion::Facets(facets)),
         ends: EndRule::All,
-    }
-}
-
-fn add_oblique<N: Float>(pose: &Pose<'_, N>, frustum: &ObliqueFrustum, add: &mut Add<'_, N>) {
-    let [base, top] = frustum.disc_bounds();
-    let lo = |k: usize| base[0][k].min(top[0][k]);
-    let hi = |k: usize| base[1][k].max(top[1][k]);
-    let whole = [[0, 1, 2].map(lo), [0, 1, 2].map(hi)];
-    let wall = oblique_sides::wall(frustum, pose.placed);
-    let mut add_in = |surface: Surface<N>, [lo, hi]: [[f64; 3]; 2]| {
-        add(surface, lo.map(N::from_f64), hi.map(N::from_f64));
-    };
-    add_in(wall, whole);
-    for (side, bounds) in [(1, base), (2, top)] {
-        if side == 2 && frustum.top().is_zero() {
-            continue;
-        }
-        let exact = oblique_sides::coefficients(frustum, side);
-        let normal = Vector3::from(exact.direction.each_ref().map(N::nearest));
-        add_in(pose.plane(exact.point, normal.unit()), bounds);
     }
 }
 

@@ -18,16 +18,17 @@ pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>)
     let expected = match error {
         ConstructionError::NotUnion(_) => "a union of shapes, or shapes with plane faces",
         ConstructionError::NoHull => {
-            "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and \
-             prisms between the same two planes"
+            "shapes with plane faces, balls of one radius, shapes about one axis, or cylinders, cones \
+             and prisms with parallel axes"
         }
         ConstructionError::NoSum => {
             "a ball with any shape, prisms and cylinders of one direction, or shapes with plane \
              faces of which one is convex"
         }
         ConstructionError::Elliptic => {
-            "a scale along the axis of a cylinder, equal in all directions, or of plane faces"
+            "cylinders, cones, prisms or plane faces, or a scale equal in all directions"
         }
+        ConstructionError::CrossedChords => "a figure whose arcs are split, or of several parts",
         ConstructionError::Boundary(_) => "a solid whose size is known",
         ConstructionError::NoProjection(_) => "a result of segments and arcs",
         _ => "a valid shape",
@@ -35,6 +36,7 @@ pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>)
     let is_about_circles = match error {
         ConstructionError::NoHull
         | ConstructionError::Elliptic
+        | ConstructionError::CrossedChords
         | ConstructionError::NoProjection(_) => true,
         ConstructionError::Figure(error) => concerns_circles(error),
         _ => false,

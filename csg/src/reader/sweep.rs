@@ -9,7 +9,7 @@ use super::number::bad_length;
 use super::refusal::construction_error;
 use super::region::{Region, RegionFigure, bad_figure};
 use crate::builder::{Builder, SolidId};
-use crate::construction::{AffineMap, ObliquePrism};
+use crate::construction::{AffineMap, ObliquePrism, scaled_prism};
 use crate::figure::{Figure, FigureOperation, FigurePoint, PlaneMap};
 use crate::primitive::{Primitive, PrimitiveError, RevolutionAngle};
 use crate::transform::Transform;
@@ -68,16 +68,11 @@ impl Extrusion<'_> {
                 Primitive::frustum(radius.clone(), radius * factor, self.height.clone())
             }
             None => {
-                let figure = placed.clone();
-                Primitive::scaled_prism(figure, self.height.clone(), factor.clone())
+                let made = scaled_prism(builder, &placed, self.height, factor);
+                return made.map_err(|error| construction_error(&error, span));
             }
         };
-        match scaled {
-            Err(PrimitiveError::ObliqueArc) => {
-                self.oblique(builder, &placed, &PlaneMap::identity(), span)
-            }
-            made => Ok(builder.primitive(made.map_err(wrong)?)),
-        }
+        Ok(builder.primitive(scaled.map_err(wrong)?))
     }
 
     /// The solid of a figure whose arcs become ellipses, or lead to oblique cones.

@@ -9,6 +9,7 @@
 //! The face lies to the left, towards N × T, so the path enters the face where D·(N × T) > 0.
 
 mod reach;
+mod track;
 
 use super::Brep;
 use super::topology::{CoedgeId, Sense};
@@ -26,6 +27,7 @@ use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 use reach::Reach;
+use track::Track;
 
 /// A piece of a face's boundary. The face lies to the left of its direction, seen from the side to
 /// which the face's outward normal points.
@@ -88,16 +90,6 @@ pub struct PathCrossing<N: Float = f64> {
 /// A curve crosses a path clearly if the sine of their angle is greater than this times its rounding
 /// error over its radius of curvature.
 const TURNS_BACK: f64 = 16.0;
-
-#[derive(Clone, Copy, Debug)]
-enum Track<N: Float = f64> {
-    Line(Vector3<N>),
-    /// The circle about the frame's z axis, starting at its x axis, with the radius.
-    Circle(Frame<N>, N),
-    /// An ellipse with the radii along x and y, starting at the eccentric angle. In place of its
-    /// length, the angle times the greater radius is used.
-    Ellipse(Frame<N>, [N; 2], N),
-}
 
 /// The part of the plane section that is the path.
 #[derive(Clone, Copy, Debug)]
@@ -337,18 +329,7 @@ impl<N: Float> SurfacePath<N> {
 
     /// The path from the same point in the opposite direction.
     pub(super) fn reversed(self) -> Self {
-        let track = match self.track {
-            Track::Line(d) => Track::Line(-d),
-            Track::Circle(f, r) => Track::Circle(Frame::toward(f.origin, -f.z, f.x), r),
-            Track::Ellipse(f, radii, start) => {
-                let turned = Frame {
-                    y: -f.y,
-                    z: -f.z,
-                    ..f
-                };
-                Track::Ellipse(turned, radii, -start)
-            }
-        };
+        let track = self.track.reversed();
         Self::new(&self.start, self.normal, track, self.branch, self.length)
     }
 
@@ -365,54 +346,23 @@ impl<N: Float> SurfacePath<N> {
 
     /// Whether the path ends where it starts.
     pub(super) fn closes(&self) -> bool {
-        match self.track {
-            Track::Line(_) => false,
-            Track::Circle(_, radius) => self.length.reaches(N::TAU * radius),
-            Track::Ellipse(_, [a, b], _) => self.length.reaches(N::TAU * a.max(b)),
-        }
+        let round = self.track.round();
+        round.is_some_and(|round| self.length.reaches(round))
     }
 
     /// The point at the length s.
     pub fn point(&self, s: N) -> Point3<N> {
-        match self.track {
-            Track::Line(d) => self.start + d * s,
-            Track::Circle(ref f, r) => {
-                let (sin, cos) = (s / r).sin_cos();
-                f.point(r * cos, r * sin, N::ZERO)
-            }
-            Track::Ellipse(ref f, [a, b], start) => {
-                let (sin, cos) = (start + s / a.max(b)).sin_cos();
-                f.point(a * cos, b * sin, N::ZERO)
-            }
-        }
+        self.track.point(&self.start, s)
     }
 
     /// The length at which the path passes a point of it.
     pub(crate) fn at(&self, p: &Point3<N>) -> N {
-        match self.track {
-            Track::Line(d) => (p - self.start).dot(&d),
-            Track::Circle(ref f, r) => {
-                let q = f.coordinates(p);
-                q.y.atan2(q.x).rem_euclid(N::TAU) * r
-            }
-            Track::Ellipse(ref f, [a, b], start) => {
-                let q = f.coordinates(p);
-                let turned = eccentric_angle([q.x, q.y], [a, b]) - start;
-                turned.rem_euclid(N::TAU) * a.max(b)
-            }
-        }
+        self.track.at(&self.start, p)
     }
 
     /// The unit direction at a point of the walk.
     pub(super) fn direction(&self, p: &Point3<N>) -> Vector3<N> {
-        match self.track {
-            Track::Line(d) => d,
-            Track::Circle(ref f, _) => f.z.cross(&(p - f.origin)).unit(),
-            Track::Ellipse(ref f, [a, b], _) => {
-                let q = f.coordinates(p);
-                (f.y * (q.x * b / a) - f.x * (q.y * a / b)).unit()
-            }
-        }
+        self.track.direction(p)
     }
 
     fn passes(&self, p: &Point3<N>, resolution: N) -> bool {

@@ -4,6 +4,7 @@
 //! and from the exact coefficients with more bits where those are inconclusive. The constructions
 //! use the decisions and compute in f64. Directions need not have unit length.
 
+mod coefficients;
 mod elliptic;
 
 use super::region_of_interest::RegionOfInterest;
@@ -15,41 +16,9 @@ use crate::number::predicates::CertifiedDistance;
 use crate::number::rational::Rational;
 use crate::number::rational_interval::RationalInterval;
 use crate::number::separation_bound::SeparationBound;
+pub use coefficients::Coefficients;
+use coefficients::{SLACK, numbers};
 pub use elliptic::ConjugateAxes;
-
-/// The defining coefficients of a surface, over some number type.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Coefficients<N> {
-    /// A point of the plane or of the cylinder's axis, the apex or the centre.
-    pub point: [N; 3],
-    /// The outward normal or the axis, of any length; a cone's points into the nappe. Unused for a
-    /// sphere.
-    pub direction: [N; 3],
-    /// The radius; for a cone the tangent of the half angle; for a torus the radius of the spine.
-    /// Unused for a plane.
-    pub size: N,
-    /// The radius of a torus's tube; unused for other surfaces.
-    pub tube: N,
-    /// The conjugate axes of an elliptic surface, which are in place of its size: the images of the
-    /// axes of a round cylinder of radius 1, or a round cone whose half angle has the tangent 1.
-    pub axes: Option<Box<ConjugateAxes<N>>>,
-}
-
-impl<N> Coefficients<N> {
-    /// The coefficients converted to another number type.
-    pub fn map<M>(&self, f: impl Fn(&N) -> M) -> Coefficients<M> {
-        Coefficients {
-            point: self.point.each_ref().map(&f),
-            direction: self.direction.each_ref().map(&f),
-            size: f(&self.size),
-            tube: f(&self.tube),
-            axes: self
-                .axes
-                .as_ref()
-                .map(|axes| Box::new(axes.each_ref().map(|axis| axis.each_ref().map(&f)))),
-        }
-    }
-}
 
 /// The origin of a surface's numbers.
 #[derive(Clone, Copy)]
@@ -124,42 +93,6 @@ impl<'a, N: Float> Carrier<'a, N> {
 
     fn is_constructed(&self) -> bool {
         matches!(self.source, Source::Constructed)
-    }
-}
-
-/// The bound of the error of a surface's numbers, in units in the last place of what they measure.
-const SLACK: f64 = 8.0;
-
-/// The coefficients of a surface. `of` converts a number; its rounding error is proportional to the
-/// number given second.
-fn numbers<N: Float, M>(surface: &Surface<N>, of: impl Fn(N, N) -> M) -> Coefficients<M> {
-    let frame = surface.frame();
-    let length = |x: N| of(x, Float::abs(x));
-    let axes = |[a, b]: [N; 2]| {
-        let axes = [(frame.x, a), (frame.y, b), (frame.z, N::ONE)];
-        let rounding = N::from_f64(SLACK) * a.max(b).max(N::ONE);
-        Some(Box::new(axes.map(|(axis, size)| {
-            <[N; 3]>::from(axis * size).map(|x| of(x, rounding))
-        })))
-    };
-    let (size, tube) = match surface {
-        Surface::Plane(_) => (N::ZERO, N::ZERO),
-        Surface::Cylinder(c) => (c.radius, N::ZERO),
-        Surface::Cone(c) => (c.sin / c.cos, N::ZERO),
-        Surface::Sphere(s) => (s.radius, N::ZERO),
-        Surface::Torus(t) => (t.major, t.minor),
-        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => (N::ONE, N::ZERO),
-    };
-    Coefficients {
-        point: <[N; 3]>::from(frame.origin).map(&length),
-        direction: <[N; 3]>::from(frame.z).map(|x| of(x, N::ONE)),
-        size: length(size),
-        tube: length(tube),
-        axes: match surface {
-            Surface::EllipticCylinder(s) => axes(s.radii),
-            Surface::EllipticCone(s) => axes(s.slopes),
-            _ => None,
-        },
     }
 }
 

@@ -99,6 +99,36 @@ pub fn frustum(
     Expression::primitive(lengths.and_then(|[a, b, h]| Ok(Primitive::frustum(a, b, h)?)))
 }
 
+/// An oblique frustum: the points p x + q y + h z with 0 <= h <= 1 and p² + q² <= (1 + (top - 1) h)².
+/// The axes x and y are conjugate radii of the ellipse at its base, z is the centre of its top, and
+/// `top` is the size of that relative to the base.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = oblique_frustum([5, 0, 0], [0, 3, 0], [2, 1, 10], 1).evaluate()?;
+/// assert!((solid.volume() - 150.0 * std::f64::consts::PI).abs() < 1e-11);
+/// // Axes in one plane span no solid.
+/// assert!(oblique_frustum([5, 0, 0], [0, 3, 0], [2, 1, 0], 1).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn oblique_frustum<N: Into<ExactNumber>>(
+    x: [N; 3],
+    y: [N; 3],
+    z: [N; 3],
+    top: impl Into<ExactNumber>,
+) -> Expression {
+    let axis = |axis: [N; 3]| numbers(axis.map(Into::into));
+    let axes = axis(x).and_then(|x| Ok([x, axis(y)?, axis(z)?]));
+    let top = numbers([top.into()]);
+    Expression::primitive(axes.and_then(|axes| {
+        let [top] = top?;
+        Ok(Primitive::oblique_frustum(axes, top)?)
+    }))
+}
+
 /// A sphere centred at the origin.
 ///
 /// # Examples

@@ -23,8 +23,6 @@ pub(super) enum Unsupported {
     Ellipsoid,
     /// A cone whose ends are not circles.
     Elliptical,
-    /// A cone whose axis is not perpendicular to its ends.
-    Oblique,
     /// Eight corners that form neither a block nor a right-angled wedge.
     Polyhedron,
     /// A vector of length zero, or beyond the range of f64.
@@ -47,8 +45,10 @@ impl Unsupported {
                 "an ellipsoid whose axes are not equal and at right angles",
                 "a sphere",
             ),
-            Self::Elliptical => ("a cone of elliptical section", "circles at both ends"),
-            Self::Oblique => ("an oblique cone", "an axis at right angles to its ends"),
+            Self::Elliptical => (
+                "a cone whose ends are not similar",
+                "similar ellipses at both ends",
+            ),
             Self::Polyhedron => (
                 "a polyhedron of eight corners",
                 "a block or a right-angled wedge",
@@ -122,11 +122,8 @@ pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported
     ];
     let upright = [&a, &b, &c, &d].map(|radius| slant(radius, &h));
     let [round, upright] = [round, upright].map(|all| all.into_iter().fold(0.0, f64::max));
-    if round > MOST {
-        return Err(Unsupported::Elliptical);
-    }
-    if upright > MOST {
-        return Err(Unsupported::Oblique);
+    if round > MOST || upright > MOST {
+        return oblique_cone([v, h, a, b, c, d]);
     }
     let axis = Axis::new(&h).ok_or(Unsupported::NoDirection)?;
     let primitive = Primitive::frustum(la, lc, axis.length).map_err(Unsupported::Size)?;
@@ -134,6 +131,46 @@ pub(super) fn cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported
         primitive,
         moves: axis.turn.then(Transform::shift(v)),
         residual: round.max(upright),
+    })
+}
+
+/// A cone whose top is its base, scaled; the larger of the two has the axes.
+fn oblique_cone([v, h, a, b, c, d]: [Vector; 6]) -> Result<Solid, Unsupported> {
+    let [la, lb, lc, ld] = [&a, &b, &c, &d].map(extent);
+    let is_reversed = la < lc;
+    let ([x, y], [u, w], [widest, narrowest]) = match is_reversed {
+        true => ([c, d], [a, b], [lc, la]),
+        false => ([a, b], [c, d], [la, lc]),
+    };
+    let [other_widest, other_narrowest] = match is_reversed {
+        true => [ld, lb],
+        false => [lb, ld],
+    };
+    if widest.is_zero() || other_widest.is_zero() {
+        return Err(Unsupported::Elliptical);
+    }
+    let top = &narrowest / &widest;
+    let off = |big: &Vector, small: &Vector| {
+        let apart: Vector = std::array::from_fn(|i| &small[i] - &top * &big[i]);
+        to_f64(&extent(&apart)) / to_f64(&widest)
+    };
+    let residual = off(&x, &u).max(off(&y, &w));
+    let residual = residual.max(to_f64(&(&other_narrowest / &other_widest - &top)).abs());
+    if residual > MOST {
+        return Err(Unsupported::Elliptical);
+    }
+    let (z, base) = match is_reversed {
+        true => {
+            let base = std::array::from_fn(|i| &v[i] + &h[i]);
+            (h.map(|c| -c), base)
+        }
+        false => (h, v),
+    };
+    let primitive = Primitive::oblique_frustum([x, y, z], top).map_err(Unsupported::Size)?;
+    Ok(Solid {
+        primitive,
+        moves: Transform::shift(base),
+        residual,
     })
 }
 

@@ -4,6 +4,7 @@ use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
 use super::super::number::bad_length;
+use super::super::refusal::construction_error;
 use super::super::region::Region;
 use super::super::sweep::{Extrusion, Revolution};
 use super::contours::contours;
@@ -11,6 +12,7 @@ use super::region::region;
 use super::value::Content;
 use super::{Fields, number};
 use crate::builder::{Builder, SolidId};
+use crate::construction::scaled_prism;
 use crate::figure::Figure;
 use crate::primitive::{Primitive, RevolutionAngle};
 
@@ -32,8 +34,9 @@ pub(super) fn prism(builder: &mut Builder, fields: &Fields<'_>) -> Result<SolidI
     let wrong = |error| bad_length(error, Some(&height.value), height.span.clone());
     match figure {
         SweptFigure::Contours(figure) => {
-            let made = Primitive::scaled_prism(figure, height.value.clone(), top);
-            Ok(builder.primitive(made.map_err(wrong)?))
+            Primitive::check_prism(&height.value, &top).map_err(wrong)?;
+            let made = scaled_prism(builder, &figure, &height.value, &top);
+            made.map_err(|error| construction_error(&error, &fields.span))
         }
         SweptFigure::Expression(region) => {
             Primitive::check_prism(&height.value, &top).map_err(wrong)?;

@@ -7,12 +7,13 @@ use premio_kernel::number::rational::Rational;
 use super::super::error::SpannedError;
 use super::super::frame::{Axis, Vector, difference};
 use super::super::number::bad_length;
+use super::super::refusal::construction_error;
 use super::super::spanned::Spanned;
 use crate::builder::{Builder, SolidId};
+use crate::construction::{AffineMap, mapped};
 use crate::primitive::{Primitive, PrimitiveError};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
-use premio_text::escape::quote;
 
 /// The shape of an object.
 #[derive(Debug, Clone)]
@@ -200,15 +201,19 @@ fn moved(builder: &mut Builder, shape: Shape, moves: Transform) -> Object {
     }
 }
 
-/// A uniform scale, possibly with mirrors.
+/// A scale, possibly with mirrors.
 fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usize>) -> Object {
     let size = |x: &Rational| if *x < Rational::ZERO { -x } else { x.clone() };
     let factor = size(&by[0]);
     if by.iter().any(|x| size(x) != factor) {
-        let [x, y, z] = by;
-        let found = format!("a scale of {}", quote(&format!("<{x}, {y}, {z}>")));
-        let expected = "the same in all directions, but for a box along the axes";
-        return SpannedError::input(span, found, expected).into();
+        let part = match shape.part(builder) {
+            Ok(part) => part,
+            Err(fault) => return fault.into(),
+        };
+        return match mapped(builder, part, &AffineMap::scale(by)) {
+            Ok(image) => image.into(),
+            Err(error) => construction_error(&error, &span).into(),
+        };
     }
     let part = match shape.part(builder) {
         Ok(part) => builder.scaled(part, factor),

@@ -54,7 +54,7 @@ fn flattened_files_are_read() {
 }
 
 #[test]
-fn polygons_are_read_and_ellipsoids_refused() {
+fn polygons_and_elliptic_cones_are_read() {
     let Some(polygons) = file("sphere-tests.csg", &ReadOptions::default()) else {
         return;
     };
@@ -76,8 +76,10 @@ fn polygons_are_read_and_ellipsoids_refused() {
     let Some(scaled) = file("transform-tests.csg", &ReadOptions::default()) else {
         return;
     };
-    let error = scaled.unwrap_err();
-    assert_eq!((error.line, error.column), (2, 13));
+    let tree = scaled.unwrap().tree;
+    let is_oblique =
+        |placed: &PlacedPrimitive| matches!(placed.primitive, Primitive::ObliqueFrustum { .. });
+    assert_eq!(tree.leaves().filter(|leaf| is_oblique(leaf.1)).count(), 2);
 }
 
 #[test]

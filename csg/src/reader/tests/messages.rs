@@ -76,7 +76,7 @@ fn csg_nodes() {
     assert_snapshot!(csg("rotate_extrude() { circle(r = 1); }"), @"part:1:20: found a figure that crosses the axis, expected a figure on one side of the axis");
     assert_snapshot!(csg("rotate_extrude(angle = 0) { circle(r = 1); }"), @"part:1:24: found the value 0, expected an angle other than 0");
     assert_snapshot!(csg("linear_extrude(height = 1, scale = [1, -2]) { square(1); }"), @"part:1:36: found a list, expected a `scale` of zero or more");
-    assert_snapshot!(csg("hull() { sphere(r = 1); cube(1); }"), @"part:1:1: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and prisms between the same two planes (with `--facets all` circles are read as OpenSCAD's polygons)");
+    assert_snapshot!(csg("hull() { sphere(r = 1); cube(1); }"), @"part:1:1: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders, cones and prisms with parallel axes (with `--facets all` circles are read as OpenSCAD's polygons)");
     assert_snapshot!(csg("hull() { difference() { cube(2); sphere(1); } }"), @"part:1:1: found a hull of a difference or an intersection, expected a union of shapes, or shapes with plane faces");
     assert_snapshot!(csg("minkowski() { cylinder(h = 1, r1 = 1, r2 = 2); cube(1); }"), @"part:1:1: found a Minkowski sum of these shapes, expected a ball with any shape, prisms and cylinders of one direction, or shapes with plane faces of which one is convex");
     assert_snapshot!(csg("projection() { intersection() { sphere(1); cube(1); } }"), @"part:1:1: found a shadow of these shapes, expected a result of segments and arcs (with `--facets all` circles are read as OpenSCAD's polygons)");
@@ -86,7 +86,7 @@ fn csg_nodes() {
 
 #[test]
 fn csg_matrices() {
-    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { sphere(1); }"), @"part:1:12: found a map that changes the shape of circles, expected a scale along the axis of a cylinder, equal in all directions, or of plane faces (with `--facets all` circles are read as OpenSCAD's polygons)");
+    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { sphere(1); }"), @"part:1:12: found a map that changes the shape of spheres or revolutions, expected cylinders, cones, prisms or plane faces, or a scale equal in all directions (with `--facets all` circles are read as OpenSCAD's polygons)");
     assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) { cube(1); }"), @"part:1:43: found a list, expected the last row [0, 0, 0, 1] of an affine map");
     assert_snapshot!(csg("multmatrix([[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:13: found a list of 3, expected a row of four numbers");
 }
@@ -96,7 +96,7 @@ fn json_values() {
     assert_snapshot!(json(r#"{"prim":"sphere","r":-1}"#), @"part:1:22: found the value -1, expected a radius greater than zero");
     assert_snapshot!(json(r#"{"prim":"block","size":[1,0,2]}"#), @"part:1:27: found the value 0, expected a size along y greater than zero");
     assert_snapshot!(json(r#"{"prim":"sphere","radius":1}"#), @"part:1:18: found the unknown key `radius`, expected one of `prim`, `transform`, `r` (did you mean `r`?)");
-    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron" (did you mean `sphere`?)"#);
+    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron", "oblique_frustum" (did you mean `sphere`?)"#);
     assert_snapshot!(json(r#"{"op":"union"}"#), @"part:1:14: found an object without `children`, expected the key `children`");
     assert_snapshot!(json(r#"{"op":"union","children":{}}"#), @"part:1:26: found an object, expected an array of solids");
     assert_snapshot!(json(r#"{"op":"union","children":[1]}"#), @"part:1:27: found the number `1`, expected a solid: an object with `op` or `prim`");

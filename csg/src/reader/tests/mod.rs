@@ -64,6 +64,14 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
             within && is_around(figure, [radial, z])
         }
         Primitive::Polyhedron { polyhedron } => is_enclosed(polyhedron, [x, y, z]),
+        Primitive::ObliqueFrustum { frustum } => {
+            let axes = frustum.axes().each_ref().map(|axis| axis.each_ref().map(f));
+            let columns = axes.map(Vector3::from);
+            let inverse = nalgebra::Matrix3::from_columns(&columns).try_inverse();
+            let q = inverse.unwrap() * Vector3::new(x, y, z);
+            let size = 1.0 + (f(frustum.top()) - 1.0) * q.z;
+            (0.0..=1.0).contains(&q.z) && q.x.hypot(q.y) <= size
+        }
     }
 }
 

@@ -204,7 +204,7 @@ fn wrong_figures() {
     assert_snapshot!(refused("P = REV(CIR(R=1) AT (MOVX=2), ANGLE=400)"), @"part:1:37: found the value 400, expected an angle greater than 0, and at most 360 degrees");
     assert_snapshot!(refused("P = HULL()"), @"part:1:10: found `)`, expected a solid or a figure for `HULL`");
     assert_snapshot!(refused("P = HULL(SPH(R=1), CIR(R=2))"), @"part:1:10: found a solid, expected a figure for `HULL`, as another operand is one");
-    assert_snapshot!(refused("P = HULL(BLO(X=1, Y=1, Z=1), TOR(RMAJ=3, RMIN=1))"), @"part:1:5: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders and prisms between the same two planes");
+    assert_snapshot!(refused("P = HULL(BLO(X=1, Y=1, Z=1), TOR(RMAJ=3, RMIN=1))"), @"part:1:5: found a hull with faces that are on no plane, cylinder, cone, sphere or torus, expected shapes with plane faces, balls of one radius, shapes about one axis, or cylinders, cones and prisms with parallel axes");
     assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0))"), @"part:1:5: found points without faces, expected points, `;` and faces");
     assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0), (0,1,0); (0,1,3))"), @"part:1:42: found the number 3, expected the index of a point, from 0 to 2");
     assert_snapshot!(refused("P = POLY((0,0,0), (1,0,0), (0,1,0); (0,1,2))"), @"part:1:5: found an invalid polyhedron (the edge from point 0 to point 1 has no face on its other side), expected closed faces around a solid");

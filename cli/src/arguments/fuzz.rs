@@ -111,8 +111,8 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{Deep, Figures, Grid, Near, Parts, Rounded, Tangent, Wide};
-        const CHOICES: [ProfileChoice; 9] = [
+        use Profile::{Deep, Figures, Grid, Near, Oblique, Parts, Rounded, Tangent, Wide};
+        const CHOICES: [ProfileChoice; 10] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -122,6 +122,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Parts),
             ProfileChoice::One(Rounded),
             ProfileChoice::One(Figures),
+            ProfileChoice::One(Oblique),
         ];
         &CHOICES
     }

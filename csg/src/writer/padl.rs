@@ -158,12 +158,10 @@ fn call(primitive: &Primitive) -> String {
         }
         Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
         Primitive::ObliqueFrustum { frustum } => {
-            let [x, y, z] = frustum.axes().each_ref().map(tuple);
-            let top = match frustum.top().is_one() {
-                true => String::new(),
-                false => format!(", TOP={}", quotient(frustum.top())),
-            };
-            format!("OBL({x}, {y}, {z}{top})")
+            let [x, y, z] = frustum.axes();
+            let top = Some(frustum.top()).filter(|top| !top.is_one());
+            let third = tuple(z.iter().chain(top));
+            format!("OBL({}, {}, {third})", tuple(x), tuple(y))
         }
     }
 }

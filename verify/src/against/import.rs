@@ -90,6 +90,19 @@ enum JsonPrimitive {
         #[serde(rename = "r")]
         minor: f64,
     },
+    #[serde(rename = "oblique_frustum")]
+    ObliqueFrustum {
+        x: [f64; 3],
+        y: [f64; 3],
+        z: [f64; 3],
+        #[serde(default = "one")]
+        top: f64,
+    },
+}
+
+/// The size of a top that is not given.
+fn one() -> f64 {
+    1.0
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -177,6 +190,10 @@ fn primitive(primitive: JsonPrimitive) -> ModelPrimitive {
         JsonPrimitive::Frustum { r1, r2, h } => ModelPrimitive::Frustum { r1, r2, h },
         JsonPrimitive::Sphere { r } => ModelPrimitive::Sphere(r),
         JsonPrimitive::Torus { major, minor } => ModelPrimitive::Torus { major, minor },
+        JsonPrimitive::ObliqueFrustum { x, y, z, top } => ModelPrimitive::ObliqueFrustum {
+            axes: [x, y, z],
+            top,
+        },
     }
 }
 

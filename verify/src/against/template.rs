@@ -136,6 +136,13 @@ fn number(value: f64) -> String {
 
 fn call(primitive: &ModelPrimitive) -> String {
     let (name, lengths): (&str, &[f64]) = match primitive {
+        ModelPrimitive::ObliqueFrustum {
+            axes: [[a, b, c], [d, e, f], [g, h, i]],
+            top,
+        } => (
+            "oblique_frustum",
+            &[*a, *b, *c, *d, *e, *f, *g, *h, *i, *top],
+        ),
         ModelPrimitive::Block(size) => ("block", size),
         ModelPrimitive::Wedge(size) => ("wedge", size),
         ModelPrimitive::Cylinder { r, h } => ("cylinder", &[*r, *h]),

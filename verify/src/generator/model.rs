@@ -40,6 +40,13 @@ pub enum ModelPrimitive {
         /// The tube's radius.
         minor: f64,
     },
+    /// An oblique frustum with its base about the origin.
+    ObliqueFrustum {
+        /// Conjugate radii of the base, and the centre of the top.
+        axes: [[f64; 3]; 3],
+        /// The size of the top relative to the base.
+        top: f64,
+    },
 }
 
 /// A coordinate axis.

@@ -85,6 +85,11 @@ fn of_primitive(primitive: &ModelPrimitive) -> String {
         }
         ModelPrimitive::Cylinder { r, h } => frustum(r, r, h),
         ModelPrimitive::Frustum { r1, r2, h } => frustum(r1, r2, h),
+        ModelPrimitive::ObliqueFrustum { axes, top } => {
+            let row = |i: usize| format!("[{}, {}, {}, 0]", axes[0][i], axes[1][i], axes[2][i]);
+            let matrix = format!("[{}, {}, {}, [0, 0, 0, 1]]", row(0), row(1), row(2));
+            block("multmatrix", &matrix, &frustum(1.0, top, 1.0))
+        }
         ModelPrimitive::Sphere(r) => format!("sphere({}, r = {r});\n", circles(CircleForm::Circle)),
         ModelPrimitive::Torus { major, minor } => {
             let disc = ModelFigure::Disc {

@@ -185,6 +185,9 @@ fn lengths(primitive: &ModelPrimitive) -> Vec<f64> {
         ModelPrimitive::Frustum { r1, r2, h } => vec![r1, r2, h],
         ModelPrimitive::Sphere(r) => vec![r],
         ModelPrimitive::Torus { major, minor } => vec![major, minor],
+        ModelPrimitive::ObliqueFrustum { axes, top } => {
+            axes.as_flattened().iter().copied().chain([top]).collect()
+        }
     }
 }
 
@@ -197,11 +200,19 @@ fn with_lengths(primitive: &ModelPrimitive, lengths: &[f64]) -> Option<ModelPrim
         (ModelPrimitive::Frustum { .. }, &[r1, r2, h]) => ModelPrimitive::Frustum { r1, r2, h },
         (ModelPrimitive::Sphere(_), &[r]) => ModelPrimitive::Sphere(r),
         (ModelPrimitive::Torus { .. }, &[major, minor]) => ModelPrimitive::Torus { major, minor },
+        (ModelPrimitive::ObliqueFrustum { .. }, &[a, b, c, d, e, f, g, h, i, top]) => {
+            let axes = [[a, b, c], [d, e, f], [g, h, i]];
+            ModelPrimitive::ObliqueFrustum { axes, top }
+        }
         _ => return None,
     };
     let sound = match changed {
         ModelPrimitive::Frustum { r1, r2, h } => r1 > 0.0 && r2 >= 0.0 && h > 0.0,
         ModelPrimitive::Torus { major, minor } => minor > 0.0 && major > minor,
+        ModelPrimitive::ObliqueFrustum { axes, top } => {
+            let [x, y, z] = axes.map(nalgebra::Vector3::from);
+            top >= 0.0 && x.cross(&y).dot(&z) != 0.0
+        }
         _ => lengths.iter().all(|x| *x > 0.0),
     };
     sound.then_some(changed)

@@ -106,6 +106,9 @@ fn solid(
         ModelPrimitive::Frustum { r1, r2, h } => Exact::frustum(number(r1), number(r2), number(h)),
         ModelPrimitive::Sphere(r) => Exact::sphere(number(r)),
         ModelPrimitive::Torus { major, minor } => Exact::torus(number(major), number(minor)),
+        ModelPrimitive::ObliqueFrustum { axes, top } => {
+            Exact::oblique_frustum(axes.map(|axis| axis.map(number)), number(top))
+        }
     }
 }
 

@@ -500,7 +500,7 @@ mod tests {
             }),
             Surface::EllipticCone(EllipticCone {
                 frame,
-                slopes: [0.75, 1.5],
+                slopes: [0.75, 0.5],
             }),
         ]
     }

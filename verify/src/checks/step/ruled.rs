@@ -38,7 +38,11 @@ impl RuledSurface {
         [low, high]: [f64; 2],
     ) -> Option<Self> {
         let is_weight = |k: usize| {
-            let expected = if k % 2 == 0 { 1.0 } else { FRAC_1_SQRT_2 };
+            let expected = if k.is_multiple_of(2) {
+                1.0
+            } else {
+                FRAC_1_SQRT_2
+            };
             weights[k].iter().all(|w| (w - expected).abs() <= SAME)
         };
         let start = *knots.first()?;

@@ -4,6 +4,7 @@ mod deep;
 mod figures;
 mod grid;
 mod near;
+mod oblique;
 mod parts;
 pub mod rounded;
 mod tangent;
@@ -35,11 +36,13 @@ pub enum Profile {
     Rounded,
     /// One to three solids of figures: extrusions, revolutions, hulls and Minkowski sums.
     Figures,
+    /// 2 to 5 primitives, of which half are oblique frustums: elliptic cylinders and cones.
+    Oblique,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -48,6 +51,7 @@ impl Profile {
         Self::Parts,
         Self::Rounded,
         Self::Figures,
+        Self::Oblique,
     ];
 
     /// The name, as it is written on the command line.
@@ -61,6 +65,7 @@ impl Profile {
             Self::Parts => "parts",
             Self::Rounded => "rounded",
             Self::Figures => "figures",
+            Self::Oblique => "oblique",
         }
     }
 
@@ -81,6 +86,9 @@ impl Profile {
             }
             Self::Figures => {
                 "One to three solids of figures: extrusions, revolutions, hulls and Minkowski sums"
+            }
+            Self::Oblique => {
+                "2 to 5 primitives, of which half are oblique frustums: elliptic cylinders and cones"
             }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
@@ -103,6 +111,7 @@ impl Profile {
             Self::Parts => parts::model(seed),
             Self::Rounded => rounded::model(seed),
             Self::Figures => figures::model(seed),
+            Self::Oblique => oblique::model(seed),
         }
     }
 }
@@ -146,6 +155,7 @@ mod tests {
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,
                     Profile::Figures => 3,
+                    Profile::Oblique => 5,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }

@@ -93,6 +93,8 @@ fn port(random: &mut RandomChoices, primitive: &ModelPrimitive) -> Port {
             let tilt = random.choose(&[90.0, 90.0, 0.0, 30.0]);
             port(on_circle([0.0, 0.0], r, tilt), tilt)
         }
+        // On the base, which is all that is known of its place.
+        ModelPrimitive::ObliqueFrustum { .. } => port([0.0; 3], -90.0),
         ModelPrimitive::Torus { major, minor } => {
             let tilt = random.choose(&[0.0, 90.0, 180.0, 90.0, 60.0, 120.0, 37.0]);
             port(on_circle([major, 0.0], minor, tilt), tilt)

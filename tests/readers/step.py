@@ -23,9 +23,11 @@ from OCP.TopExp import TopExp_Explorer
 # A face that an edge of four faces parts is one face once that edge is two.
 PARTED = "faces that are parted where four meet are merged"
 KNOWN = {
+    "apple-cut-along-the-cone-of-its-pole": "refused: no seam from a pole inside the face",
     "ball-between-two-races": PARTED,
     "cylinder-in-a-hollow": PARTED,
     "cylinder-touching-block-along-line": PARTED,
+    "plane-tangent-to-an-elliptic-cone": PARTED,
     "ring-under-a-block-turned-within-the-resolution": PARTED,
     "torus-lying-on-block": PARTED,
     "ball-in-a-tube-off-by-1e-6": "refused: the loops of a face 1e-6 apart",

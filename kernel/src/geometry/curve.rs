@@ -354,11 +354,13 @@ impl<N: Float> Curve<N> {
         let mut candidates = q.parameters_of(u);
         // A cone's apex has no definite angle.
         candidates.extend(q.apex_parameters());
-        let distance = |t: &N| (self.point(*t) - p).length();
-        candidates
-            .into_iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .unwrap_or(u)
+        // A candidate at infinity has no point.
+        let distance = |t: N| (self.point(t) - p).length();
+        let placed = candidates.into_iter().map(|t| (distance(t), t));
+        placed
+            .filter(|(away, _)| away.is_finite())
+            .min_by(|(a, _), (b, _)| a.total_cmp(b))
+            .map_or(u, |(_, t)| t)
     }
 
     /// Newton steps on the distance to `p`, as long as they reduce it. Where the speed is zero a

@@ -122,7 +122,7 @@ fn messages() {
         ("node.csg", "group() { roof() { square(size = 1); } }\n"),
         (
             "skew.csg",
-            "multmatrix([[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { sphere(r = 1); }\n",
+            "multmatrix([[1, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { rotate_extrude() { multmatrix([[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { circle(r = 1); } } }\n",
         ),
         ("bytes.padl", "A = \u{1}\u{7f}@\n"),
     ] {

@@ -1,7 +1,9 @@
 //! The primitive solids, each in its own frame.
 
+mod conjugate_radii;
 mod oblique;
 
+pub use conjugate_radii::ConjugateRadii;
 pub use oblique::ObliqueFrustum;
 
 use std::fmt;
@@ -81,6 +83,11 @@ pub enum Primitive {
     ObliqueFrustum {
         /// Its axes and the size of its top.
         frustum: Arc<ObliqueFrustum>,
+    },
+    /// The image of a sphere under a linear map.
+    Ellipsoid {
+        /// Its conjugate radii.
+        radii: Arc<ConjugateRadii>,
     },
 }
 
@@ -195,8 +202,8 @@ pub enum PrimitiveError {
     /// An arc that is scaled must be centred on the axis of the prism.
     #[error("an arc of a scaled figure must be centred at the origin")]
     ObliqueArc,
-    /// The axes of an oblique frustum must not lie in one plane.
-    #[error("the axes of an oblique frustum must not lie in one plane")]
+    /// The axes of an oblique frustum or an ellipsoid must not lie in one plane.
+    #[error("three axes must not lie in one plane")]
     Flat,
 }
 
@@ -376,13 +383,22 @@ impl Primitive {
         Ok(Self::ObliqueFrustum { frustum })
     }
 
+    /// The image of a sphere under a linear map.
+    ///
+    /// # Errors
+    /// The radii lie in one plane.
+    pub fn ellipsoid(radii: [SpacePoint; 3]) -> Result<Self, PrimitiveError> {
+        let radii = Arc::new(ConjugateRadii::new(radii)?);
+        Ok(Self::Ellipsoid { radii })
+    }
+
     /// The number of surfaces that bound it.
     pub(crate) fn side_count(&self) -> usize {
         match self {
             Self::Block { .. } => 6,
             Self::Wedge { .. } => 5,
             Self::Cylinder { .. } | Self::Frustum { .. } | Self::ObliqueFrustum { .. } => 3,
-            Self::Sphere { .. } | Self::Torus { .. } => 1,
+            Self::Sphere { .. } | Self::Torus { .. } | Self::Ellipsoid { .. } => 1,
             Self::Prism { figure, .. } | Self::Revolution { figure, .. } => {
                 figure.edges().len() + 2
             }
@@ -406,6 +422,7 @@ impl Primitive {
             Self::Sphere { radius } => vec![radius],
             Self::Torus { major, minor } => vec![major, minor],
             Self::ObliqueFrustum { frustum } => frustum.lengths().collect(),
+            Self::Ellipsoid { radii } => radii.lengths().collect(),
         }
     }
 
@@ -452,6 +469,9 @@ impl Primitive {
             Self::ObliqueFrustum { frustum } => Self::ObliqueFrustum {
                 frustum: Arc::new(frustum.with_coordinates(|_, x| by(x))),
             },
+            Self::Ellipsoid { radii } => Self::Ellipsoid {
+                radii: Arc::new(radii.with_coordinates(|_, x| by(x))),
+            },
         }
     }
 
@@ -479,8 +499,10 @@ impl Primitive {
             | Self::Prism { .. }
             | Self::Polyhedron { .. }
             | Self::ObliqueFrustum { .. }
+            | Self::Ellipsoid { .. }
             | Self::Revolution { angle: None, .. } => Motion::identity(),
         };
+        let mirrored = |i: usize, x: &Rational| if i == 1 { -x } else { x.clone() };
         let primitive = match self {
             Self::Prism {
                 figure,
@@ -494,12 +516,12 @@ impl Primitive {
             Self::Polyhedron { polyhedron } => Self::Polyhedron {
                 polyhedron: Arc::new(polyhedron.mirrored_y()),
             },
-            Self::ObliqueFrustum { frustum } => {
-                let mirrored = |i: usize, x: &Rational| if i == 1 { -x } else { x.clone() };
-                Self::ObliqueFrustum {
-                    frustum: Arc::new(frustum.with_coordinates(mirrored)),
-                }
-            }
+            Self::ObliqueFrustum { frustum } => Self::ObliqueFrustum {
+                frustum: Arc::new(frustum.with_coordinates(mirrored)),
+            },
+            Self::Ellipsoid { radii } => Self::Ellipsoid {
+                radii: Arc::new(radii.with_coordinates(mirrored)),
+            },
             other => other.clone(),
         };
         MirrorImage { primitive, motion }

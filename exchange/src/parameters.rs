@@ -2,12 +2,12 @@
 //! the rational B-spline that a file has in its place, which starts at the window's start.
 
 use crate::rational_circle;
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Sphere, Surface, turn};
 use premio_kernel::number::float::Analytic;
 use premio_kernel::number::jet::Jet;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A surface with the parameter window of a face on it. The window of an angle covers one period
 /// from its start.
@@ -33,6 +33,17 @@ fn angle(y: Jet<f64>, x: Jet<f64>) -> Jet<f64> {
     }
 }
 
+/// The file's parameter at a latitude of an ellipsoid: that of half a circle from the lower pole.
+fn file_latitude(v: f64) -> f64 {
+    rational_circle::parameter(v + FRAC_PI_2) - FRAC_PI_2
+}
+
+/// The same of a latitude that changes.
+fn file_latitude_along(v: Jet<f64>) -> Jet<f64> {
+    let quarter = Jet::constant(FRAC_PI_2);
+    rational_circle::parameter_along(v + quarter) - quarter
+}
+
 impl ParameterWindow {
     /// The parameters of a point that moves on the surface, with two derivatives. They are not
     /// shifted into the window. `None` on the axis, where the angle is undefined.
@@ -41,10 +52,28 @@ impl ParameterWindow {
         if matches!(self.surface, Surface::Plane(_)) {
             return Some([x, y]);
         }
+        let [x, y, z] = match &self.surface {
+            Surface::EllipticCylinder(s) => {
+                let [a, b] = s.radii;
+                [x.scale(1.0 / a), y.scale(1.0 / b), z]
+            }
+            Surface::EllipticCone(s) => {
+                let [a, b] = s.slopes;
+                [x.scale(1.0 / a), y.scale(1.0 / b), z]
+            }
+            Surface::Ellipsoid(s) => {
+                let unit = [x, y, z].into_iter().zip(s.radii);
+                let unit: Vec<Jet<f64>> = unit.map(|(x, r)| x.scale(1.0 / r)).collect();
+                s.axes.map(|axis| {
+                    unit[0].scale(axis.x) + unit[1].scale(axis.y) + unit[2].scale(axis.z)
+                })
+            }
+            _ => [x, y, z],
+        };
         let rho = (x.square() + y.square()).root();
-        let about = match self.radii() {
-            Some([a, b]) => self.file_angle_along(angle(y.scale(1.0 / b), x.scale(1.0 / a))),
-            None => angle(y, x),
+        let about = match self.surface.is_elliptic() {
+            true => self.file_angle_along(angle(y, x)),
+            false => angle(y, x),
         };
         let along = match &self.surface {
             Surface::Plane(_)
@@ -53,6 +82,7 @@ impl ParameterWindow {
             | Surface::EllipticCylinder(_)
             | Surface::EllipticCone(_) => z,
             Surface::Sphere(_) => angle(z, rho),
+            Surface::Ellipsoid(_) => file_latitude_along(angle(z, rho)),
             Surface::Torus(s) => angle(z, rho - Jet::constant(s.major)),
         };
         (about.d.is_finite() && about.dd.is_finite()).then_some([about, along])
@@ -60,28 +90,31 @@ impl ParameterWindow {
 
     /// The parameters of a point, in the window; on the axis the angle is NaN.
     pub fn parameters_at(&self, p: &Point3<f64>) -> Point2<f64> {
-        let q = self.surface.frame().coordinates(p);
         let [u, v] = self.surface.parameters(p);
-        let on_axis = q.x.hypot(q.y) <= AXIS * self.reach;
         let u = match self.surface {
             Surface::Plane(_) => u,
-            _ if on_axis => f64::NAN,
-            _ if self.radii().is_some() => {
+            _ if self.is_on_axis(p) => f64::NAN,
+            _ if self.surface.is_elliptic() => {
                 let start = self.starts[0];
                 start + rational_circle::parameter(turn(u - start))
             }
             _ => self.within(0, u),
         };
-        Point2::new(u, self.within(1, v))
+        let v = match self.surface {
+            Surface::Ellipsoid(_) => file_latitude(v),
+            _ => self.within(1, v),
+        };
+        Point2::new(u, v)
     }
 
-    /// The radii of an elliptic surface.
-    fn radii(&self) -> Option<[f64; 2]> {
-        match &self.surface {
-            Surface::EllipticCylinder(s) => Some(s.radii),
-            Surface::EllipticCone(s) => Some(s.slopes),
-            _ => None,
-        }
+    /// Whether a point of the surface is on the axis of its angle.
+    fn is_on_axis(&self, p: &Point3<f64>) -> bool {
+        let q = self.surface.frame().coordinates(p);
+        let (away, reach) = match &self.surface {
+            Surface::Ellipsoid(s) => (s.on_axes(&q).xy().norm(), 1.0),
+            _ => (q.x.hypot(q.y), self.reach),
+        };
+        away <= AXIS * reach
     }
 
     /// The file's parameter at an angle that changes, in the window.
@@ -100,9 +133,9 @@ impl ParameterWindow {
 
     /// The surface's own angle at a parameter.
     pub fn angle_at(&self, u: f64) -> f64 {
-        match self.radii() {
-            Some(_) => self.starts[0] + rational_circle::angle(turn(u - self.starts[0])),
-            None => u,
+        match self.surface.is_elliptic() {
+            true => self.starts[0] + rational_circle::angle(turn(u - self.starts[0])),
+            false => u,
         }
     }
 
@@ -110,9 +143,9 @@ impl ParameterWindow {
     /// unless it is elliptic.
     pub fn cut_at(&self, angle: f64) -> Self {
         let mut cut = *self;
-        match self.radii() {
-            Some(_) => cut.starts[0] = angle,
-            None => cut.surface = turned(&self.surface, angle),
+        match self.surface.is_elliptic() {
+            true => cut.starts[0] = angle,
+            false => cut.surface = turned(&self.surface, angle),
         }
         cut
     }
@@ -132,7 +165,11 @@ impl ParameterWindow {
 
     /// The point with the given parameters.
     pub fn point(&self, uv: [f64; 2]) -> Point3<f64> {
-        self.surface.point(self.angle_at(uv[0]), uv[1])
+        let v = match self.surface {
+            Surface::Ellipsoid(_) => rational_circle::angle(uv[1] + FRAC_PI_2) - FRAC_PI_2,
+            _ => uv[1],
+        };
+        self.surface.point(self.angle_at(uv[0]), v)
     }
 
     /// The value that differs from `x` by whole periods and is closest to `other`.
@@ -160,13 +197,16 @@ fn turned(surface: &Surface, by: f64) -> Surface {
     placed(surface, frame)
 }
 
-/// A sphere with another axis.
-pub fn with_axis(sphere: &Sphere, z: nalgebra::Vector3<f64>) -> Surface {
-    let frame = match z == sphere.frame.z {
-        true => sphere.frame,
-        false => Frame::about(sphere.frame.origin, z),
-    };
-    Surface::Sphere(Sphere { frame, ..*sphere })
+/// A sphere or an ellipsoid with another axis of its parameters; any other surface as it is.
+pub fn with_axis(surface: &Surface, z: Vector3<f64>) -> Surface {
+    match surface {
+        Surface::Sphere(sphere) if z != sphere.frame.z => Surface::Sphere(Sphere {
+            frame: Frame::about(sphere.frame.origin, z),
+            ..*sphere
+        }),
+        Surface::Ellipsoid(s) if z != s.axes[2] => Surface::Ellipsoid(s.about(z)),
+        other => *other,
+    }
 }
 
 fn placed(surface: &Surface, frame: Frame) -> Surface {
@@ -179,6 +219,7 @@ fn placed(surface: &Surface, frame: Frame) -> Surface {
         Surface::Torus(s) => s.frame = frame,
         Surface::EllipticCylinder(s) => s.frame = frame,
         Surface::EllipticCone(s) => s.frame = frame,
+        Surface::Ellipsoid(s) => s.frame = frame,
     }
     placed
 }

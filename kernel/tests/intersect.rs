@@ -3,6 +3,7 @@
 use approx::assert_abs_diff_eq;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, coincidence, intersect};
@@ -91,16 +92,21 @@ impl Random {
                 frame,
                 radii: two(r(0.5, 2.0), r(0.5, 2.0)),
             }),
-            _ => Surface::EllipticCone(EllipticCone {
+            6 => Surface::EllipticCone(EllipticCone {
                 frame,
                 slopes: two(r(0.5, 2.0), r(0.5, 2.0)),
             }),
+            _ => {
+                let [a, b] = two(r(0.5, 2.5), r(0.5, 2.5));
+                let radii = [a, r(0.5, 2.5), b];
+                Surface::Ellipsoid(Ellipsoid::new(frame, radii))
+            }
         }
     }
 }
 
 /// The number of kinds of surfaces.
-const KINDS: u64 = 7;
+const KINDS: u64 = 8;
 
 /// Points at which `b` changes sign along parameter lines of `a`.
 fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
@@ -115,7 +121,7 @@ fn crossings(a: &Surface, b: &Surface, rng: &mut Random) -> Vec<Point3<f64>> {
                     a.point(6.3 * i, 8.0 * j - 4.0)
                 }
                 Surface::Cone(_) | Surface::EllipticCone(_) => a.point(6.3 * i, 4.0 * j),
-                Surface::Sphere(_) => a.point(6.3 * i, 3.1 * j - 1.55),
+                Surface::Sphere(_) | Surface::Ellipsoid(_) => a.point(6.3 * i, 3.1 * j - 1.55),
                 Surface::Torus(_) => a.point(6.3 * i, 6.3 * j),
             }
         };
@@ -381,4 +387,106 @@ fn links_that_fill_each_other_touch_along_two_circles() {
     let (mut radii, nodes) = contact_circles(&link, &other);
     radii.sort_by(f64::total_cmp);
     assert_eq!((radii, nodes > 0), (vec![0.5, 1.5], true));
+}
+
+/// An ellipsoid along the axes of the world.
+fn ellipsoid(centre: [f64; 3], radii: [f64; 3]) -> Surface {
+    let frame = Frame::world().at(centre.into());
+    Surface::Ellipsoid(Ellipsoid::new(frame, radii))
+}
+
+fn sphere(radius: f64) -> Surface {
+    let frame = Frame::world();
+    Surface::Sphere(Sphere { frame, radius })
+}
+
+/// The sphere with the middle radius meets an ellipsoid in its two circular central sections, which
+/// cross at the ends of the middle axis.
+#[test]
+fn a_sphere_of_the_middle_radius_meets_an_ellipsoid_in_two_circles() {
+    let meeting = met(&sphere(1.5), &ellipsoid([0.0; 3], [1.0, 1.5, 2.0]));
+    let found = circles(&meeting);
+    assert_eq!((meeting.branches.len(), found.len()), (2, 2));
+    for c in found {
+        assert_abs_diff_eq!(c[..], [0.0, 0.0, 0.0, 1.5][..], epsilon = 1e-13);
+    }
+    let mut heights: Vec<f64> = meeting.nodes.iter().map(|n| n.point.y).collect();
+    heights.sort_by(f64::total_cmp);
+    assert_abs_diff_eq!(heights[..], [-1.5, 1.5][..], epsilon = 1e-13);
+    assert!(meeting.nodes.iter().all(|n| n.on.len() == 2));
+}
+
+#[test]
+fn a_sphere_touches_an_ellipsoid_of_revolution_along_its_equator() {
+    for height in [1.0, 3.0] {
+        let meeting = met(&sphere(2.0), &ellipsoid([0.0; 3], [2.0, 2.0, height]));
+        assert_eq!(circles(&meeting), [[0.0, 0.0, 0.0, 2.0]]);
+        assert!(meeting.branches[0].tangent && meeting.nodes.is_empty());
+    }
+}
+
+#[test]
+fn a_sphere_touches_an_ellipsoid_at_two_poles() {
+    for radii in [[1.0, 1.0, 2.0], [1.0, 1.5, 2.0], [3.0, 2.5, 2.0]] {
+        let meeting = met(&sphere(2.0), &ellipsoid([0.0; 3], radii));
+        assert!(meeting.branches.is_empty(), "{radii:?}");
+        let mut heights: Vec<f64> = meeting.nodes.iter().map(|n| n.point.z).collect();
+        heights.sort_by(f64::total_cmp);
+        assert_abs_diff_eq!(heights[..], [-2.0, 2.0][..], epsilon = 1e-11);
+    }
+}
+
+/// Similar ellipsoids intersect in a plane: half way for equal ones.
+#[test]
+fn similar_ellipsoids_meet_in_an_ellipse() {
+    let radii = [2.0, 1.0, 1.5];
+    let meeting = met(
+        &ellipsoid([0.0; 3], radii),
+        &ellipsoid([1.0, 0.0, 0.0], radii),
+    );
+    let [branch] = &meeting.branches[..] else {
+        panic!("{meeting:?}")
+    };
+    let Curve::Ellipse(e) = &branch.curve else {
+        panic!("{branch:?}")
+    };
+    // At x = 1/2 the section is √(1 - 1/16) of the radii.
+    let part = (15.0_f64 / 16.0).sqrt();
+    assert_abs_diff_eq!(e.frame.origin, Point3::new(0.5, 0.0, 0.0), epsilon = 1e-13);
+    assert_abs_diff_eq!([e.a, e.b][..], [1.5 * part, part][..], epsilon = 1e-13);
+}
+
+/// A sphere about the axis meets an ellipsoid of revolution in two parallels: with x² + y² = 4 - 4 z²
+/// in (z - 1/4)² + x² + y² = 4 + 1/16 the heights are 0 and -1/6.
+#[test]
+fn a_sphere_about_the_axis_meets_an_ellipsoid_of_revolution_in_parallels() {
+    let frame = Frame::world().at(Point3::new(0.0, 0.0, 0.25));
+    let radius = (4.0_f64 + 1.0 / 16.0).sqrt();
+    let meeting = met(
+        &Surface::Sphere(Sphere { frame, radius }),
+        &ellipsoid([0.0; 3], [2.0, 2.0, 1.0]),
+    );
+    let mut found = circles(&meeting);
+    found.sort_by(|a, b| a[2].total_cmp(&b[2]));
+    let low = (4.0_f64 - 4.0 / 36.0).sqrt();
+    let expected = [[0.0, 0.0, -1.0 / 6.0, low], [0.0, 0.0, 0.0, 2.0]];
+    assert_eq!(found.len(), 2);
+    for (c, e) in found.iter().zip(expected) {
+        assert_abs_diff_eq!(c[..], e[..], epsilon = 1e-13);
+    }
+}
+
+/// Equal oblate ellipsoids side by side touch in a point; the gap decides.
+#[test]
+fn ellipsoids_side_by_side_touch_in_a_point() {
+    let radii = [2.0, 1.0, 1.5];
+    for (gap, nodes, branches) in [(0.0, 1, 0), (1e-6, 0, 0), (-1e-6, 0, 1)] {
+        let other = ellipsoid([4.0 + gap, 0.0, 0.0], [2.0, 1.25, 1.0]);
+        let meeting = met(&ellipsoid([0.0; 3], radii), &other);
+        assert_eq!(
+            (meeting.nodes.len(), meeting.branches.len()),
+            (nodes, branches),
+            "{gap}"
+        );
+    }
 }

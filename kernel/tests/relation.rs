@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
@@ -64,7 +65,7 @@ fn the_edge_of_the_band_is_told_by_more_bits() {
             &EXTENT,
         );
         let predicates = Predicates::new(to_f64(&resolution));
-        let touch = pair.how(PairMeasure::PlaneOnSphere);
+        let touch = pair.how(PairMeasure::PlaneOnBall);
         assert_eq!(
             predicates.classify("plane on sphere", touch, [0.0; 3]),
             side
@@ -114,7 +115,8 @@ fn surface(kind: usize, c: &Coefficients<Rational>) -> Surface {
             let o = frame.origin;
             match kind {
                 5 => Surface::EllipticCylinder(EllipticCylinder::with_axes(o, axes)),
-                _ => Surface::EllipticCone(EllipticCone::with_axes(o, axes)),
+                6 => Surface::EllipticCone(EllipticCone::with_axes(o, axes)),
+                _ => Surface::Ellipsoid(Ellipsoid::with_axes(o, axes)),
             }
         }
     }
@@ -174,7 +176,7 @@ const OF_TWO: &[PairMeasure] = &[
     PairMeasure::OffAxis,
     PairMeasure::BetweenAxes,
     PairMeasure::OffLine,
-    PairMeasure::PlaneOnSphere,
+    PairMeasure::PlaneOnBall,
     PairMeasure::PlaneOnCylinder,
     PairMeasure::PlaneAcrossCylinder,
     PairMeasure::PlaneOnRuling,
@@ -201,7 +203,7 @@ const OF_TORUS: &[PairMeasure] = &[
 proptest! {
     #[test]
     fn ranges_hold_what_more_bits_give(
-        a in numbers(), b in numbers(), kinds in (1usize..7, 1usize..7),
+        a in numbers(), b in numbers(), kinds in (1usize..8, 1usize..8),
         shear in prop::array::uniform2(-3i32..3),
         relation in prop_oneof![prop::sample::select(OF_TWO), prop::sample::select(OF_TORUS)],
     ) {
@@ -214,6 +216,14 @@ proptest! {
         ];
         let is_cone = first == 6 || kinds.1 == 6;
         prop_assume!(!is_cone || of_cone.contains(&relation));
+        // An ellipsoid's direction is that of no axis in particular.
+        let of_ellipsoid = [
+            PairMeasure::Between,
+            PairMeasure::PlaneOnBall,
+            PairMeasure::PointOnQuadric,
+        ];
+        let is_ellipsoid = first == 7 || kinds.1 == 7;
+        prop_assume!(!is_ellipsoid || of_ellipsoid.contains(&relation));
         prop_assume!(kinds.1 != 5 || relation != PairMeasure::PlaneOnRuling);
         let shear = shear.map(|k| Rational::from_parts(k.into(), 3u8.into()));
         let prepared = |kind: usize, c: &Coefficients<Rational>| match kind > 4 {

@@ -11,18 +11,18 @@ use super::oblique_prism::{ObliquePrism, oblique_frustum};
 use super::plane_faces::{own_corners, polyhedron};
 use crate::builder::{Builder, SolidId};
 use crate::figure::PlaneMap;
-use crate::polyhedron::dot;
+use crate::polyhedron::{SpacePoint, dot};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::{PlacedPrimitive, TreeNode};
 
 /// The image of a solid under an affine map.
 ///
-/// Plane faces stay plane, and cylinders and cones become elliptic ones. Spheres, tori and other
-/// revolutions may be scaled equally in all directions.
+/// Plane faces stay plane, cylinders and cones become elliptic ones, and spheres ellipsoids. Tori and
+/// other revolutions may be scaled equally in all directions.
 ///
 /// # Errors
-/// The map makes another surface of a sphere or a revolution, or makes a solid flat.
+/// The map makes another surface of a revolution, or makes a solid flat.
 pub fn mapped(
     builder: &mut Builder,
     solid: SolidId,
@@ -68,7 +68,27 @@ fn of_leaf(
     Ok(builder.primitive(Primitive::Polyhedron { polyhedron }))
 }
 
-/// The image of a primitive with cylinders and cones.
+/// An ellipsoid, or a sphere if its radii are perpendicular and equal.
+fn ellipsoid(
+    builder: &mut Builder,
+    radii: [SpacePoint; 3],
+    centre: SpacePoint,
+) -> Result<SolidId, ConstructionError> {
+    let [x, y, z] = &radii;
+    let square = dot(x, x);
+    let is_round = [(x, y), (y, z), (z, x)]
+        .into_iter()
+        .all(|(u, v)| dot(u, v).is_zero() && dot(v, v) == square);
+    let radius = is_round.then(|| exact_sqrt(&square)).flatten();
+    let primitive = match radius {
+        Some(radius) => Primitive::sphere(radius)?,
+        None => Primitive::ellipsoid(radii)?,
+    };
+    let part = builder.primitive(primitive);
+    Ok(builder.moved(part, Transform::shift(centre)))
+}
+
+/// The image of a primitive with spheres, cylinders and cones.
 fn of_round_leaf(
     builder: &mut Builder,
     primitive: &Primitive,
@@ -95,6 +115,18 @@ fn of_round_leaf(
         }
         Primitive::Frustum { base, top, height } => {
             frustum(builder, base, top, [&Rational::ZERO, height])
+        }
+        Primitive::Sphere { radius } => {
+            let radii = [0, 1, 2].map(|i| {
+                let mut axis = [zero(), zero(), zero()];
+                axis[i] = radius.clone();
+                map.vector(&axis)
+            });
+            ellipsoid(builder, radii, map.offset.clone())
+        }
+        Primitive::Ellipsoid { radii } => {
+            let radii = radii.vectors().each_ref().map(|radius| map.vector(radius));
+            ellipsoid(builder, radii, map.offset.clone())
         }
         Primitive::ObliqueFrustum { frustum } => {
             let axes = frustum.axes().each_ref().map(|axis| map.vector(axis));

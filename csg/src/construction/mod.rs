@@ -59,8 +59,8 @@ pub enum ConstructionError {
     /// The sum has other faces, or is not supported.
     #[error("a Minkowski sum of these shapes")]
     NoSum,
-    /// The map makes ellipsoids of spheres, or other surfaces of revolutions.
-    #[error("a map that changes the shape of spheres or revolutions")]
+    /// The map makes other surfaces of revolutions.
+    #[error("a map that changes the shape of revolutions")]
     Elliptic,
     /// The figure of a prism with elliptic walls has arcs whose chords cross other edges.
     #[error("a prism with elliptic walls of a figure whose chords cross its edges")]

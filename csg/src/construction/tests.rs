@@ -256,8 +256,12 @@ fn plane_faces_take_any_scale() {
     let oval = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 1].map(n))).unwrap();
     assert_eq!(check(&b, oval, 4.0 * PI), ["elliptic cylinder", "plane"]);
     let unit = ball(&mut b, 1, [0, 0, 0]);
-    let egg = mapped(&mut b, unit, &AffineMap::scale(&[2, 1, 1].map(n)));
-    assert_eq!(egg, Err(ConstructionError::Elliptic));
+    let scale = AffineMap::scale(&[2, 1, 3].map(n));
+    let egg = mapped(&mut b, unit, &scale).unwrap();
+    assert_eq!(check(&b, egg, 8.0 * PI), ["ellipsoid"]);
+    let back = AffineMap::scale(&[3, 6, 2].map(n));
+    let round = mapped(&mut b, egg, &back).unwrap();
+    assert_eq!(check(&b, round, 288.0 * PI), ["sphere"]);
     let flat = mapped(&mut b, post, &AffineMap::scale(&[2, 1, 0].map(n)));
     assert!(flat.is_err_and(|error| error.is_empty()));
     let flat = mapped(&mut b, part, &AffineMap::scale(&[2, 1, 0].map(n)));

@@ -83,7 +83,8 @@ pub(super) fn merge<'t, N: Float>(
             Surface::Cone(_)
             | Surface::Sphere(_)
             | Surface::Torus(_)
-            | Surface::EllipticCone(_) => f.origin,
+            | Surface::EllipticCone(_)
+            | Surface::Ellipsoid(_) => f.origin,
         }
     };
     let mut list: Vec<PlacedSide<'_, N>> = Vec::new();

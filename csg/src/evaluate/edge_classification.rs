@@ -424,7 +424,11 @@ impl<N: Float> Classifier<'_, N> {
         }
         let mut whole = Vec::new();
         for (c, surface) in self.arrangement.carriers.iter().enumerate() {
-            if bounded[c] || !matches!(surface, Surface::Sphere(_) | Surface::Torus(_)) {
+            let is_closed = matches!(
+                surface,
+                Surface::Sphere(_) | Surface::Torus(_) | Surface::Ellipsoid(_)
+            );
+            if bounded[c] || !is_closed {
                 continue;
             }
             if let Some(outward) = self.whole(c, surface)? {

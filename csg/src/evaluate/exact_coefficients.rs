@@ -1,6 +1,6 @@
 //! The exact coefficients of half spaces: rational numbers in a rational frame.
 
-use super::{oblique_sides, walls};
+use super::{ellipsoid_side, oblique_sides, walls};
 use crate::primitive::Primitive;
 use crate::tree::PlacedPrimitive;
 use premio_kernel::geometry::surface_pair::Coefficients;
@@ -60,6 +60,7 @@ fn in_own_frame(primitive: &Primitive, side: usize) -> Coefficients<Rational> {
             ..plane()
         },
         Primitive::ObliqueFrustum { frustum } => oblique_sides::coefficients(frustum, side),
+        Primitive::Ellipsoid { radii } => ellipsoid_side::coefficients(radii),
         Primitive::Revolution { .. } => match walls::wall(primitive, side) {
             Some(wall) => wall.coefficients,
             None => {
@@ -176,7 +177,9 @@ mod tests {
                     Surface::Cone(c) => [c.sin / c.cos, 0.0],
                     Surface::Sphere(s) => [s.radius, 0.0],
                     Surface::Torus(t) => [t.major, t.minor],
-                    Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => [1.0, 0.0],
+                    Surface::EllipticCylinder(_)
+                    | Surface::EllipticCone(_)
+                    | Surface::Ellipsoid(_) => [1.0, 0.0],
                 };
                 let slack = 4.0 * f64::EPSILON;
                 let direction = Vector3::from(exact.direction).normalize();

@@ -1,6 +1,7 @@
 //! Represents every primitive as an intersection of half spaces, or as walls around a section and
 //! the half spaces of its ends.
 
+use super::ellipsoid_side;
 use super::face_hulls::FaceHull;
 use super::facets::Facets;
 use super::oblique_sides;
@@ -356,6 +357,11 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
                 let [lo, hi] = side.bounds.map(|corner| corner.map(N::from_f64));
                 add(side.surface, lo, hi);
             }
+        }
+        Primitive::Ellipsoid { radii } => {
+            let reach = radii.reach().map(N::from_f64);
+            let surface = ellipsoid_side::surface(radii, placed);
+            add(surface, reach.map(|r| -r), reach);
         }
         Primitive::Prism { .. } | Primitive::Revolution { .. } => {
             return sectioned(leaf, &pose);

@@ -49,6 +49,7 @@ mod distinct_surfaces;
 mod edge_candidates;
 mod edge_classification;
 mod edge_joining;
+mod ellipsoid_side;
 mod error;
 mod escalation;
 mod evaluation;

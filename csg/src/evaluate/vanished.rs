@@ -66,16 +66,18 @@ fn thickness(primitive: &Primitive) -> f64 {
         Primitive::Sphere { radius } => 2.0 * to_f64(radius),
         Primitive::Torus { minor, .. } => 2.0 * to_f64(minor),
         Primitive::Prism { height, .. } => to_f64(height),
-        Primitive::ObliqueFrustum { frustum } => {
-            let [x, y, z] = frustum.axes();
-            // The volume of the box of the axes over the greatest of its sides.
-            let length = |v: &SpacePoint| to_f64(&dot(v, v)).sqrt();
-            let sides = [cross(x, y), cross(y, z), cross(z, x)];
-            let greatest = sides.iter().map(length).fold(0.0, f64::max);
-            to_f64(&dot(&sides[0], z)).abs() / greatest
-        }
+        Primitive::ObliqueFrustum { frustum } => thickness_of_box(frustum.axes()),
+        Primitive::Ellipsoid { radii } => thickness_of_box(radii.vectors()),
         Primitive::Revolution { .. } | Primitive::Polyhedron { .. } => f64::INFINITY,
     }
+}
+
+/// The volume of the oblique box with three sides over the greatest of its faces.
+fn thickness_of_box([x, y, z]: &[SpacePoint; 3]) -> f64 {
+    let length = |v: &SpacePoint| to_f64(&dot(v, v)).sqrt();
+    let faces = [cross(x, y), cross(y, z), cross(z, x)];
+    let greatest = faces.iter().map(length).fold(0.0, f64::max);
+    to_f64(&dot(&faces[0], z)).abs() / greatest
 }
 
 /// A point in the middle of a primitive, or on its axis.
@@ -94,6 +96,7 @@ fn middle(placed: &PlacedPrimitive) -> [f64; 3] {
         Primitive::Prism { height, .. } => [nothing(), nothing(), half(height)],
         Primitive::Sphere { .. }
         | Primitive::Torus { .. }
+        | Primitive::Ellipsoid { .. }
         | Primitive::Revolution { .. }
         | Primitive::Polyhedron { .. } => [nothing(), nothing(), nothing()],
         Primitive::ObliqueFrustum { frustum } => frustum.axes()[2].each_ref().map(half),

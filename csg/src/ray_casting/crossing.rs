@@ -3,11 +3,13 @@
 //! The surfaces are those of the primitives. Coincident surfaces of several primitives are merged,
 //! so that neighbouring lines that cross the same face of the part cross the same surface.
 
+use super::ellipsoid::EllipsoidShape;
 use super::oblique::ObliqueShape;
 use super::section::{Edge, SectionShape, Sweep};
 use super::shape::Shape;
 use super::{Event, Leaf, Ray, RayOracle};
 use nalgebra::{Matrix3, Vector3};
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::ROUNDING;
@@ -45,33 +47,51 @@ struct Carrier {
     elliptic: Option<EllipticCarrier>,
 }
 
-/// A surface o + x cos u + y sin u + v z, or o + v (x cos u + y sin u + z), by o and its axes.
+/// A surface o + x cos u + y sin u + v z, or o + v (x cos u + y sin u + z), or the image of the unit
+/// sphere about o, by o and its axes.
 #[derive(Clone, Copy, Debug)]
 struct EllipticCarrier {
     axes: Matrix3<f64>,
-    is_cone: bool,
     surface: Surface,
 }
 
+/// The kinds of elliptic surfaces.
+#[derive(Clone, Copy, Debug)]
+enum EllipticKind {
+    Cylinder,
+    Cone,
+    Ellipsoid,
+}
+
 impl EllipticCarrier {
-    fn new(point: Vector3<f64>, axes: Matrix3<f64>, is_cone: bool) -> Self {
+    fn new(kind: EllipticKind, point: Vector3<f64>, axes: Matrix3<f64>) -> Self {
         let columns = [0, 1, 2].map(|i| axes.column(i).into());
-        let surface = match is_cone {
-            true => Surface::EllipticCone(EllipticCone::with_axes(point.into(), columns)),
-            false => Surface::EllipticCylinder(EllipticCylinder::with_axes(point.into(), columns)),
+        let o = point.into();
+        let surface = match kind {
+            EllipticKind::Cylinder => {
+                Surface::EllipticCylinder(EllipticCylinder::with_axes(o, columns))
+            }
+            EllipticKind::Cone => Surface::EllipticCone(EllipticCone::with_axes(o, columns)),
+            EllipticKind::Ellipsoid => Surface::Ellipsoid(Ellipsoid::with_axes(o, columns)),
         };
-        Self {
-            axes,
-            is_cone,
-            surface,
-        }
+        Self { axes, surface }
+    }
+
+    /// The surface about another point, with turned axes.
+    fn placed(&self, point: Vector3<f64>, turn: &Matrix3<f64>) -> Self {
+        let kind = match self.surface {
+            Surface::EllipticCone(_) => EllipticKind::Cone,
+            Surface::Ellipsoid(_) => EllipticKind::Ellipsoid,
+            _ => EllipticKind::Cylinder,
+        };
+        Self::new(kind, point, turn * self.axes)
     }
 
     /// Whether points around the other one lie on this one.
     fn coincides(&self, other: &Self, near: f64, size: f64) -> bool {
         let places = [0.1, 1.3, 2.4, 3.6, 4.9, 5.8].into_iter();
         let mut places = places.flat_map(|u| [(u, 0.5 * size), (u, size)]);
-        self.is_cone == other.is_cone
+        self.surface.kind() == other.surface.kind()
             && places.all(|(u, v)| {
                 let p = other.surface.point(u, v);
                 self.surface.distance(&p).abs() <= near
@@ -113,17 +133,25 @@ impl Carrier {
     fn elliptic(frustum: &ObliqueShape) -> Self {
         let zero = Vector3::zeros();
         let mut axes = frustum.axes;
-        let is_cone = frustum.growth != 0.0;
-        let point = match is_cone {
-            true => axes.column(2) / -frustum.growth,
-            false => zero,
+        let (kind, point) = match frustum.growth != 0.0 {
+            true => (EllipticKind::Cone, axes.column(2) / -frustum.growth),
+            false => (EllipticKind::Cylinder, zero),
         };
-        if is_cone {
+        if let EllipticKind::Cone = kind {
             axes.set_column(2, &-point);
         }
         Self {
-            elliptic: Some(EllipticCarrier::new(point, axes, is_cone)),
+            elliptic: Some(EllipticCarrier::new(kind, point, axes)),
             ..Self::new(Kind::Elliptic, point, zero, [0.0; 2])
+        }
+    }
+
+    fn ellipsoid(shape: &EllipsoidShape) -> Self {
+        let zero = Vector3::zeros();
+        let own = EllipticCarrier::new(EllipticKind::Ellipsoid, zero, shape.radii);
+        Self {
+            elliptic: Some(own),
+            ..Self::new(Kind::Elliptic, zero, zero, [0.0; 2])
         }
     }
 
@@ -141,9 +169,7 @@ impl Carrier {
             Kind::Cylinder => point + along,
             Kind::Cone | Kind::Sphere | Kind::Torus | Kind::Elliptic => point,
         };
-        let elliptic = self
-            .elliptic
-            .map(|own| EllipticCarrier::new(point, leaf.turn * own.axes, own.is_cone));
+        let elliptic = self.elliptic.map(|own| own.placed(point, &leaf.turn));
         Self {
             point,
             axis,
@@ -230,6 +256,7 @@ fn carriers(shape: &Shape) -> Vec<Carrier> {
             vec![Carrier::new(Kind::Torus, zero, z, [major, minor])]
         }
         Shape::Section(section) => section_carriers(section),
+        Shape::Ellipsoid(ellipsoid) => vec![Carrier::ellipsoid(ellipsoid)],
         Shape::Oblique(frustum) => {
             let [x, y, z] = [0, 1, 2].map(|i| Vector3::from(frustum.axes.column(i)));
             let normal = x.cross(&y);

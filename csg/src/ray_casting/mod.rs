@@ -6,6 +6,7 @@
 //! against it.
 
 mod crossing;
+mod ellipsoid;
 mod facets;
 mod oblique;
 mod polynomial;

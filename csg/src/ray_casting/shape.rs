@@ -1,5 +1,6 @@
 //! The primitives in their own frames: point membership and intersection with a line.
 
+use super::ellipsoid::EllipsoidShape;
 use super::facets::FacetShape;
 use super::oblique::ObliqueShape;
 use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
@@ -29,6 +30,8 @@ pub(super) enum Shape {
     Section(SectionShape),
     /// A polyhedron.
     Facets(FacetShape),
+    /// An ellipsoid.
+    Ellipsoid(EllipsoidShape),
     /// An oblique frustum.
     Oblique(ObliqueShape),
 }
@@ -68,6 +71,7 @@ impl Shape {
             }
             Primitive::Polyhedron { polyhedron } => Self::Facets(FacetShape::new(polyhedron)),
             Primitive::ObliqueFrustum { frustum } => Self::Oblique(ObliqueShape::new(frustum)),
+            Primitive::Ellipsoid { radii } => Self::Ellipsoid(EllipsoidShape::new(radii)),
         }
     }
 
@@ -91,6 +95,7 @@ impl Shape {
             Self::Section(section) => section.bounds(),
             Self::Facets(facets) => facets.bounds(),
             Self::Oblique(frustum) => frustum.bounds,
+            Self::Ellipsoid(ellipsoid) => [ellipsoid.reach.map(|r| -r), ellipsoid.reach],
             &Self::Torus { major, minor } => {
                 let r = major + minor;
                 [[-r, -r, -minor], [r, r, minor]]
@@ -115,6 +120,7 @@ impl Shape {
             },
             &Self::Torus { major, minor } => (p.x.hypot(p.y) - major).hypot(p.z) - minor,
             Self::Oblique(frustum) => frustum.level(p),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.level(p),
         }
     }
 
@@ -195,6 +201,7 @@ impl Shape {
                 facets.crossings(o, d, &mut add);
                 cuts.sort_by(f64::total_cmp);
             }
+            Self::Ellipsoid(ellipsoid) => ellipsoid.crossings(o, d).into_iter().for_each(add),
             Self::Oblique(frustum) => {
                 frustum.crossings(o, d).into_iter().for_each(add);
                 cuts.sort_by(f64::total_cmp);

@@ -26,7 +26,7 @@ pub(super) fn construction_error(error: &ConstructionError, span: &Range<usize>)
              faces of which one is convex"
         }
         ConstructionError::Elliptic => {
-            "cylinders, cones, prisms or plane faces, or a scale equal in all directions"
+            "spheres, cylinders, cones, prisms or plane faces, or a scale equal in all directions"
         }
         ConstructionError::CrossedChords => "a figure whose arcs are split, or of several parts",
         ConstructionError::Boundary(_) => "a solid whose size is known",

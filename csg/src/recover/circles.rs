@@ -44,7 +44,8 @@ impl Round<'_> {
             | Primitive::Wedge { .. }
             | Primitive::Revolution { .. }
             | Primitive::Polyhedron { .. }
-            | Primitive::ObliqueFrustum { .. } => [0.0, 0.0],
+            | Primitive::ObliqueFrustum { .. }
+            | Primitive::Ellipsoid { .. } => [0.0, 0.0],
         };
         let [lo, hi] = match self.is_reversed {
             true => [-hi, -lo],

@@ -78,7 +78,9 @@ pub(super) fn features(primitive: &Primitive, axis: LocalAxis) -> Vec<Feature> {
             true => Vec::new(),
             false => vec![plane(&zero), plane(height)],
         },
-        Primitive::Polyhedron { .. } | Primitive::ObliqueFrustum { .. } => Vec::new(),
+        Primitive::Polyhedron { .. }
+        | Primitive::ObliqueFrustum { .. }
+        | Primitive::Ellipsoid { .. } => Vec::new(),
         Primitive::Revolution { .. } => match is_across(axis) {
             true => about_centre(&[]),
             false => Vec::new(),

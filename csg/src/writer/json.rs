@@ -189,5 +189,9 @@ fn members(primitive: &Primitive) -> String {
             };
             format!(r#""oblique_frustum","x":{x},"y":{y},"z":{z}{top}"#)
         }
+        Primitive::Ellipsoid { radii } => {
+            let [x, y, z] = radii.vectors().each_ref().map(|radius| list(radius));
+            format!(r#""ellipsoid","x":{x},"y":{y},"z":{z}"#)
+        }
     }
 }

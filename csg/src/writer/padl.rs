@@ -163,6 +163,10 @@ fn call(primitive: &Primitive) -> String {
             let third = tuple(z.iter().chain(top));
             format!("OBL({}, {}, {third})", tuple(x), tuple(y))
         }
+        Primitive::Ellipsoid { radii } => {
+            let [x, y, z] = radii.vectors().each_ref().map(|radius| tuple(radius));
+            format!("ELL({x}, {y}, {z})")
+        }
     }
 }
 

@@ -227,19 +227,24 @@ fn node(primitive: &Primitive) -> String {
         }
         Primitive::Polyhedron { polyhedron: of } => polyhedron(of),
         Primitive::ObliqueFrustum { frustum } => {
-            let axes = frustum.axes();
-            let row = |i: usize| {
-                let [x, y, z] = [0, 1, 2].map(|k| decimal(&axes[k][i]));
-                format!("[{x}, {y}, {z}, 0]")
-            };
-            format!(
-                "multmatrix([{}, {}, {}, [0, 0, 0, 1]]) {{ \
-                 cylinder({SMOOTH}, h = 1, r1 = 1, r2 = {}, center = false); }}",
-                row(0),
-                row(1),
-                row(2),
+            let of = format!(
+                "cylinder({SMOOTH}, h = 1, r1 = 1, r2 = {}, center = false);",
                 decimal(frustum.top())
-            )
+            );
+            mapped(frustum.axes(), &of)
+        }
+        Primitive::Ellipsoid { radii } => {
+            mapped(radii.vectors(), &format!("sphere({SMOOTH}, r = 1);"))
         }
     }
+}
+
+/// A shape of which the coordinate axes are mapped to these.
+fn mapped(axes: &[SpacePoint; 3], shape: &str) -> String {
+    let row = |i: usize| {
+        let [x, y, z] = [0, 1, 2].map(|k| decimal(&axes[k][i]));
+        format!("[{x}, {y}, {z}, 0]")
+    };
+    let [x, y, z] = [0, 1, 2].map(row);
+    format!("multmatrix([{x}, {y}, {z}, [0, 0, 0, 1]]) {{ {shape} }}")
 }

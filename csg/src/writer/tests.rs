@@ -69,6 +69,18 @@ PART = (PRI(WALL, H=2.5) UN PRI(PGN((0,0), (4,1), (1,4)), H=2, TOP=0.25) AT (MOV
 ";
 
 #[test]
+fn elliptic_solids_are_held() {
+    let text = "PART = (OBL((4, 0, 0), (1, 3, 0), (0.5, 1, 6, 0.25)) DIF OBL((1, 0, 0), (0, 2, 0), (0, 1, 6))
+ UN ELL((4, 0, 0), (1, 3, 0), (0.5, -1, 2)) AT (ROTX=30, MOVX=1))";
+    assert_same(text, Format::Padl, Format::Json);
+    assert_same(text, Format::Padl, Format::Padl);
+    // OpenSCAD has motions as matrices, so the axes are moved ones.
+    let text =
+        "PART = ELL((4, 0, 0), (1, 3, 0), (0.5, -1, 2)) UN OBL((1, 0, 0), (0, 2, 0), (0, 1, 6))";
+    assert_same(text, Format::Padl, Format::Csg);
+}
+
+#[test]
 fn figures_and_polyhedra_are_held() {
     assert_same(FIGURES, Format::Padl, Format::Json);
     assert_same(FIGURES, Format::Padl, Format::Padl);

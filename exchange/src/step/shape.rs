@@ -180,7 +180,10 @@ impl<'s, 'e> Shape<'s, 'e> {
             };
         }
         if surface.is_elliptic() {
-            let id = self.elliptic_surface(face);
+            let id = match surface {
+                Surface::Ellipsoid(s) => self.ellipsoid(s, face.window.starts[0]),
+                _ => self.elliptic_surface(face),
+            };
             return Placed { id, level };
         }
         let placement = self.placement(&frame);
@@ -199,7 +202,10 @@ impl<'s, 'e> Shape<'s, 'e> {
                 let (major, minor) = (Real(s.major), Real(s.minor));
                 format!("TOROIDAL_SURFACE('',{placement},{major},{minor})")
             }
-            Surface::Plane(_) | Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => {
+            Surface::Plane(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_)
+            | Surface::Ellipsoid(_) => {
                 format!("PLANE('',{placement})")
             }
         };

@@ -1,9 +1,10 @@
-//! Elliptic cylinders and cones as rational B-spline surfaces, which are exact.
+//! Elliptic surfaces as rational B-spline surfaces, which are exact.
 
 use super::part21::{Id, List, Reals};
 use super::shape::Shape;
 use crate::two_manifold::SeamedFace;
 use nalgebra::Vector3;
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::surface::Surface;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
@@ -53,6 +54,49 @@ impl Shape<'_, '_> {
         ))
     }
 
+    /// An ellipsoid from pole to pole, by the circle of its longitude from a start.
+    pub(super) fn ellipsoid(&mut self, s: &Ellipsoid, start: f64) -> Id {
+        let [x, y, z] = s.conjugate_radii();
+        // The corners of the squares around the unit circles: of longitude, and of half a meridian.
+        let corner = |from: f64, k: usize| {
+            let quarter = |k: usize| (from + FRAC_PI_2 * (k / 2) as f64).sin_cos();
+            let ((sin, cos), (next_sin, next_cos)) = (quarter(k), quarter(k + 2));
+            match k % 2 {
+                0 => (sin, cos),
+                _ => (sin + next_sin, cos + next_cos),
+            }
+        };
+        let weight = |k: usize| if k % 2 == 0 { 1.0 } else { FRAC_1_SQRT_2 };
+        let (mut rows, mut weights) = (Vec::new(), Vec::new());
+        for k in 0..CONTROLS {
+            let (sin, cos) = corner(start, k);
+            let out = x * cos + y * sin;
+            let points: Vec<Id> = (0..CONTROLS_OF_HALF)
+                .map(|l| {
+                    let (up, along) = corner(-FRAC_PI_2, l);
+                    self.point(&(s.frame.origin + out * along + z * up))
+                })
+                .collect();
+            rows.push(List(&points).to_string());
+            let row: Vec<f64> = (0..CONTROLS_OF_HALF)
+                .map(|l| weight(k) * weight(l))
+                .collect();
+            weights.push(Reals(&row).to_string());
+        }
+        let around: Vec<f64> = (0..5).map(|k| start + FRAC_PI_2 * f64::from(k)).collect();
+        let along = [-FRAC_PI_2, 0.0, FRAC_PI_2];
+        self.exchange.add(format_args!(
+            "(BOUNDED_SURFACE()B_SPLINE_SURFACE(2,2,({}),.UNSPECIFIED.,.T.,.F.,.F.)\
+             B_SPLINE_SURFACE_WITH_KNOTS((3,2,2,2,3),(3,2,3),{},{},.UNSPECIFIED.)\
+             GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(({}))\
+             REPRESENTATION_ITEM('')SURFACE())",
+            rows.join(","),
+            Reals(&around),
+            Reals(&along),
+            weights.join(",")
+        ))
+    }
+
     /// The heights between which a face lies, with a margin; a cone from its apex if the face comes
     /// close to it.
     fn heights(&self, face: &SeamedFace, is_cone: bool) -> [f64; 2] {
@@ -80,3 +124,6 @@ impl Shape<'_, '_> {
 
 /// The number of control points of a circle of four quarters.
 const CONTROLS: usize = 9;
+
+/// The number of control points of half a circle.
+const CONTROLS_OF_HALF: usize = 5;

@@ -4,7 +4,8 @@ use crate::parameters::ParameterWindow;
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::EdgeId;
-use premio_kernel::geometry::surface::{Sphere, turn};
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::turn;
 use premio_kernel::geometry::torus_curve::wrap;
 use std::f64::consts::TAU;
 
@@ -147,16 +148,17 @@ impl Sampled {
     }
 }
 
-/// The candidate axes of a sphere's parameters for a face, the best first. The poles must be far
-/// from the edges. Among these, one to which most edges are parallel circles comes first, or the
-/// sphere's own axis if none is better.
+/// The candidate axes of a sphere's parameters for a face, the best first; `arm` points from the
+/// centre to a point, and the frame has the sphere's own axes. The poles must be far from the edges.
+/// Among these, one to which most edges are parallel circles comes first, or the sphere's own axis if
+/// none is better.
 pub(super) fn axes(
-    sphere: &Sphere,
+    frame: &Frame,
+    arm: impl Fn(&Point3<f64>) -> Vector3<f64>,
     samples: &Samples,
     circles: &[Vector3<f64>],
 ) -> Vec<Vector3<f64>> {
-    let arm = |p: &Point3<f64>| (p - sphere.frame.origin).normalize();
-    let arms: Vec<Vector3<f64>> = samples.points().map(arm).collect();
+    let arms: Vec<Vector3<f64>> = samples.points().map(|p| arm(p).normalize()).collect();
     let away = |z: &Vector3<f64>| {
         let near = arms.iter().map(|a| a.dot(z).abs());
         1.0 - near.fold(0.0, f64::max)
@@ -165,8 +167,7 @@ pub(super) fn axes(
         let along = circles.iter().filter(|c| c.dot(z).abs() > 1.0 - PARALLEL);
         along.count()
     };
-    let f = &sphere.frame;
-    let known = std::iter::once(&f.z).chain(circles);
+    let known = std::iter::once(&frame.z).chain(circles);
     let clear = known.filter(|z| away(z) > CLEAR);
     let best = clear.reduce(|best, z| {
         if parallel(z) > parallel(best) {
@@ -182,7 +183,7 @@ pub(super) fn axes(
         Vector3::new(r * cos, r * sin, z)
     });
     // Reversed, so that of two equally distant ones the later one comes first.
-    let mut all: Vec<Vector3<f64>> = [f.x, f.y].into_iter().chain(spread).collect();
+    let mut all: Vec<Vector3<f64>> = [frame.x, frame.y].into_iter().chain(spread).collect();
     all.reverse();
     all.sort_by(|a, b| away(b).total_cmp(&away(a)));
     best.copied().into_iter().chain(all).collect()

@@ -11,7 +11,7 @@ mod splitting;
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
-use super::tracks::{Course, Track, meridian, tube};
+use super::tracks::{Course, Track, elliptic_meridian, meridian, tube};
 use crate::parameters::{ParameterWindow, with_axis};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
@@ -19,6 +19,7 @@ use premio_kernel::brep::locate::{FaceLocator, PointLocation};
 use premio_kernel::brep::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
 use premio_kernel::geometry::curve::{Circle, Curve};
+use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
 use std::f64::consts::TAU;
 
@@ -123,11 +124,20 @@ impl Cut {
 
 impl Faced<'_> {
     fn cut(&self) -> Option<Cut> {
-        let Surface::Sphere(sphere) = self.brep.surface(self.face) else {
-            return self.cut_of(*self.brep.surface(self.face));
+        let surface = self.brep.surface(self.face);
+        let axes = match surface {
+            Surface::Sphere(s) => {
+                let arm = |p: &Point3<f64>| p - s.frame.origin;
+                axes(&s.frame, arm, &self.samples, &self.circles())
+            }
+            Surface::Ellipsoid(s) => {
+                let unit = Frame::world();
+                let arm = |p: &Point3<f64>| s.on_unit_sphere(&s.frame.coordinates(p));
+                axes(&unit, arm, &self.samples, &[])
+            }
+            _ => return self.cut_of(*surface),
         };
-        let axes = axes(sphere, &self.samples, &self.circles());
-        let of_axis = |z: Vector3<f64>| self.cut_of(with_axis(sphere, z));
+        let of_axis = |z: Vector3<f64>| self.cut_of(with_axis(surface, z));
         let mut cuts = axes.into_iter().take(AXES).map(of_axis);
         let first = cuts.next()?;
         // If seams run from both poles to one loop, readers ignore them.
@@ -351,6 +361,7 @@ impl Faced<'_> {
             Surface::Cylinder(s) => self.cylinder_track(surface, s).into_iter().collect(),
             Surface::Cone(s) => self.cone_track(surface, s).into_iter().collect(),
             Surface::Sphere(s) => meridian(surface, s.radius).into_iter().collect(),
+            Surface::Ellipsoid(s) => elliptic_meridian(s, at).into_iter().collect(),
             Surface::EllipticCylinder(_) => self.oval_track(surface, at).into_iter().collect(),
             Surface::EllipticCone(_) => self.oblique_track(surface, at).into_iter().collect(),
             Surface::Torus(s) if !s.is_ring() => self.sheet_track(surface, s).into_iter().collect(),

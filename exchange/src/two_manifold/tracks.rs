@@ -3,10 +3,12 @@
 use nalgebra::Point3;
 use premio_kernel::brep::surface_path::SurfacePath;
 use premio_kernel::brep::topology::Sense;
-use premio_kernel::geometry::curve::{Circle, Curve, Line};
+use premio_kernel::geometry::curve::{Circle, Curve, Ellipse, Line};
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
+use premio_kernel::geometry::elliptic_surface::perpendicular_axes;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Surface;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A line of constant angle.
 pub(super) struct Track {
@@ -65,6 +67,31 @@ pub(super) fn meridian(surface: &Surface, radius: f64) -> Option<Track> {
         course: Course::Open {
             first: Some(-FRAC_PI_2),
             last: Some(FRAC_PI_2),
+        },
+    })
+}
+
+/// The half of an ellipse at an angle, from pole to pole of an ellipsoid's parameters.
+pub(super) fn elliptic_meridian(s: &Ellipsoid, at: f64) -> Option<Track> {
+    let surface = Surface::Ellipsoid(*s);
+    let [south, equator] = [-FRAC_PI_2, 0.0].map(|v| surface.point(at, v));
+    let walk = SurfacePath::central(&surface, &south, &equator)?;
+    let half = 0.5 * walk.length();
+    let [out, up] = [equator - s.frame.origin, s.conjugate_radii()[2]];
+    let [long, short] = perpendicular_axes(out, up);
+    let frame = Frame::toward(s.frame.origin, out.cross(&up).normalize(), long);
+    let (a, b) = (long.norm(), short.norm());
+    let curve = Curve::Ellipse(Ellipse { frame, a, b });
+    let start = curve.parameter(&south);
+    let by = PI / half;
+    Some(Track {
+        walk: walk.upto(half),
+        curve,
+        start,
+        by,
+        course: Course::Open {
+            first: Some(start),
+            last: Some(start + PI),
         },
     })
 }

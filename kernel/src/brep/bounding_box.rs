@@ -5,7 +5,7 @@ use super::locate::{FaceLocator, PointLocation};
 use super::topology::FaceId;
 use crate::geometry::bounds::{Aabb, tight_bounds};
 use crate::geometry::surface::Surface;
-use crate::geometry::vector::direction;
+use crate::geometry::vector::{Length, direction};
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use crate::number::predicates::ROUNDING;
@@ -44,6 +44,11 @@ fn bulge<N: Float>(brep: &Brep<N>, face: FaceId, known: &Aabb) -> Aabb {
         match surface {
             Surface::Sphere(s) => {
                 points.extend([-N::ONE, N::ONE].map(|k| f.origin + axis * (k * s.radius)));
+            }
+            Surface::Ellipsoid(s) => {
+                let image = s.image(&f.components(&axis));
+                let tip = f.vector(&s.image(&(image / image.length())));
+                points.extend([-N::ONE, N::ONE].map(|k| f.origin + tip * k));
             }
             Surface::Torus(t) => {
                 // Computed from products, which keep their digits where the axis is nearly this

@@ -7,6 +7,7 @@
 //! point, N the surface's normal, h = P·N.
 
 mod density;
+mod ellipsoid_strip;
 mod face;
 mod ground;
 mod outline;
@@ -325,7 +326,9 @@ impl<N: Float> Amid<N> {
         for face in faces {
             edges = edges.hull(&box_of(brep, face));
             // A face that bulges beyond its edges has about the size of its surface.
-            if let Surface::Sphere(_) | Surface::Torus(_) = brep.surface(face) {
+            if let Surface::Sphere(_) | Surface::Torus(_) | Surface::Ellipsoid(_) =
+                brep.surface(face)
+            {
                 all = all.hull(&Aabb::new(&brep.surface(face).frame().origin));
             }
         }
@@ -386,6 +389,7 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
         _ if !brep.topology.face(face).loops.is_empty() => return b,
         Surface::Sphere(s) => s.radius,
         Surface::Torus(t) => t.circumradius(),
+        Surface::Ellipsoid(s) => s.circumradius(),
         Surface::Plane(_)
         | Surface::Cylinder(_)
         | Surface::Cone(_)

@@ -14,7 +14,7 @@ use super::topology::{FaceId, Sense};
 use crate::geometry::bounds::Aabb;
 use crate::geometry::curve::Curve;
 use crate::geometry::frame::Frame;
-use crate::geometry::surface::{Sphere, Surface, Torus};
+use crate::geometry::surface::{Surface, Torus};
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -180,20 +180,20 @@ impl<'a, N: Float> FaceLocator<'a, N> {
             | Surface::Cone(_)
             | Surface::EllipticCylinder(_)
             | Surface::EllipticCone(_) => self.ruled(p, k, turn),
-            Surface::Sphere(s) => self.spherical(s, p, k, turn),
+            Surface::Sphere(_) | Surface::Ellipsoid(_) => self.central(p, k, turn),
             Surface::Torus(s) if s.is_ring() => self.toric(s, p, k, turn),
             Surface::Torus(s) => self.on_sheet(s, p, k, turn),
         }
     }
 
-    /// A great circle to a point of the boundary, sometimes from another starting point. If the
-    /// boundary is a great circle, a path from a point close to it, or from farther along it, would
-    /// run along it.
-    fn spherical(&self, sphere: &Sphere<N>, p: &Point3<N>, k: usize, turn: N) -> Outcome {
-        let (centre, target) = (&sphere.frame.origin, self.target(k / 2));
+    /// A central section of a sphere or an ellipsoid to a point of the boundary, sometimes from another
+    /// starting point. If the boundary is a central section, a path from a point close to it, or from
+    /// farther along it, would run along it.
+    fn central(&self, p: &Point3<N>, k: usize, turn: N) -> Outcome {
+        let target = self.target(k / 2);
         // The path passes through the target. If nothing was found, the target was missed.
         let through_target = |from: &Point3<N>| {
-            let walk = SurfacePath::great_circle(centre, from, &target);
+            let walk = SurfacePath::central(self.surface, from, &target);
             match walk.map(|walk| self.take(&walk)) {
                 None | Some(Outcome::Nothing) => Outcome::Unclear,
                 Some(decided) => decided,
@@ -202,18 +202,20 @@ impl<'a, N: Float> FaceLocator<'a, N> {
         if k.is_multiple_of(2) {
             return through_target(p);
         }
-        let tangent = Frame::about(*p, (p - centre).unit());
+        let tangent = Frame::about(*p, self.surface.normal(p));
         let (sin, cos) = turn.sin_cos();
-        let lateral = tangent.point(sphere.radius * cos, sphere.radius * sin, N::ZERO);
-        let Some(detour) = SurfacePath::great_circle(centre, p, &lateral) else {
+        let away = (p - self.surface.frame().origin).length();
+        let lateral = tangent.point(away * cos, away * sin, N::ZERO);
+        let Some(detour) = SurfacePath::central(self.surface, p, &lateral) else {
             return Outcome::Unclear;
         };
-        let leg = detour.upto(sphere.radius);
+        let radian = detour.length() / N::TAU;
+        let leg = detour.upto(radian);
         match self.take(&leg) {
             Outcome::Nothing => {}
             decided => return decided,
         }
-        through_target(&leg.point(sphere.radius))
+        through_target(&leg.point(radian))
     }
 
     /// A ruling; after the first attempts from another point of the parallel.

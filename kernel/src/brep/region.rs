@@ -299,10 +299,10 @@ impl<N: Float> Sorter<'_, N> {
         let Start { arc, point, left } = start;
         match self.surface {
             Surface::Torus(t) => self.walk_torus(*t, ring, *arc, point, left),
-            Surface::Sphere(s) => {
+            Surface::Sphere(_) | Surface::Ellipsoid(_) => {
                 let goal = self.parent.len() - ATTEMPTS + attempt;
-                let target = pole(s.frame.origin, s.radius, attempt);
-                let Some(walk) = SurfacePath::great_circle(&s.frame.origin, point, &target) else {
+                let target = pole(self.surface, attempt);
+                let Some(walk) = SurfacePath::central(self.surface, point, &target) else {
                     return false;
                 };
                 let walk = walk.toward(point, left);
@@ -522,7 +522,7 @@ fn leads_down<N: Float>(surface: &Surface<N>) -> bool {
         | Surface::EllipticCylinder(_)
         | Surface::EllipticCone(_) => true,
         Surface::Torus(torus) => !torus.is_ring(),
-        Surface::Plane(_) | Surface::Sphere(_) => false,
+        Surface::Plane(_) | Surface::Sphere(_) | Surface::Ellipsoid(_) => false,
     }
 }
 
@@ -531,10 +531,16 @@ fn lowest<N: Float>(surface: &Surface<N>) -> Option<Point3<N>> {
     surface.apexes().last()
 }
 
-/// A point of a sphere that is unlikely to be special; a different one for each attempt.
-fn pole<N: Float>(centre: Point3<N>, radius: N, attempt: usize) -> Point3<N> {
+/// A point of a sphere or an ellipsoid that is unlikely to be special; a different one for each
+/// attempt.
+fn pole<N: Float>(surface: &Surface<N>, attempt: usize) -> Point3<N> {
     let d = Vector3::new(0.379_2, -0.562_7, 0.734_6).unit();
     let about = Unit::new_normalize(perpendicular(&d) + d * 0.3);
     let d = Rotation3::from_axis_angle(&about, 1.1 * attempt as f64) * d;
-    centre + d.map(N::from_f64).unit() * radius
+    let (d, frame) = (d.map(N::from_f64).unit(), surface.frame());
+    match surface {
+        Surface::Sphere(s) => frame.origin + d * s.radius,
+        Surface::Ellipsoid(s) => frame.origin + frame.vector(&s.image(&d)),
+        _ => frame.origin,
+    }
 }

@@ -1,8 +1,8 @@
 //! Paths on a surface along plane sections of it, and their crossings with arcs.
 //!
 //! A path is a straight line of a plane, a ruling or a parallel of a cylinder or a cone (of an elliptic
-//! one an ellipse), a great
-//! circle or a parallel of a sphere, or either circle of a torus. Each lies in a plane, so its
+//! one an ellipse), a section of a sphere or an ellipsoid through its centre, a parallel of one, or
+//! either circle of a torus. Each lies in a plane, so its
 //! crossings with an arc are the roots of that plane's distance along the arc. At the top of a
 //! torus the plane is tangent, and the cylinder through the path is used. Notation: s is the length
 //! along the path, D its direction, N the outward normal of the face, T the direction of an arc.
@@ -18,7 +18,10 @@ use crate::geometry::curve::{Circle, Curve, Line};
 use crate::geometry::curve_plane::{
     SectionPlane, line_intersections, section_roots, surface_roots,
 };
-use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
+use crate::geometry::ellipsoid::Ellipsoid;
+use crate::geometry::elliptic_surface::{
+    EllipticCone, EllipticCylinder, eccentric_angle, perpendicular_axes,
+};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::torus_parameter::TorusParameter;
@@ -139,6 +142,33 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
+    /// The section of a sphere or an ellipsoid through its centre, from a point of it towards `target`,
+    /// once round; `None` if the two are in one line with the centre, and for other surfaces.
+    pub fn central(surface: &Surface<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
+        match surface {
+            Surface::Sphere(s) => Self::great_circle(&s.frame.origin, start, target),
+            Surface::Ellipsoid(s) => Self::central_ellipse(s, start, target),
+            _ => None,
+        }
+    }
+
+    /// The image of the great circle through the points of the unit sphere.
+    fn central_ellipse(s: &Ellipsoid<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
+        let on_sphere = |p: &Point3<N>| s.on_unit_sphere(&s.frame.coordinates(p));
+        let (arm, goal) = (on_sphere(start), on_sphere(target));
+        let normal = arm.cross(&goal);
+        let size = normal.length();
+        if !size.is_beyond(arm.length() * goal.length() * N::ROUNDING.sqrt()) {
+            return None;
+        }
+        let ahead = normal.cross(&arm) / size;
+        let [from, ahead] = [arm, ahead].map(|axis| s.frame.vector(&s.image(&axis)));
+        let [long, short] = perpendicular_axes(from, ahead);
+        let frame = Frame::toward(s.frame.origin, from.cross(&ahead).unit(), long);
+        let radii = [long.length(), short.length()];
+        Some(Self::ellipse(start, frame, radii, Sense::Along))
+    }
+
     /// An endless straight line in a plane, along the unit vector `direction`.
     pub(crate) fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
         let normal = direction.cross(&plane.frame.z).unit();
@@ -177,6 +207,7 @@ impl<N: Float> SurfacePath<N> {
         let rho = q.x.hypot(q.y);
         let branch = match surface {
             Surface::Plane(_) => return None,
+            Surface::Ellipsoid(s) => return Self::parallel_of(s, start, sense, resolution),
             Surface::Torus(t) => {
                 let away = rho - t.major;
                 if away.is_within(N::from_f64(TOP) * t.minor) {
@@ -202,6 +233,23 @@ impl<N: Float> SurfacePath<N> {
             return is_off_axis.then(|| Self::ellipse(start, f.at(centre), radii, sense));
         }
         is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
+    }
+
+    /// The points of an ellipsoid with one latitude.
+    fn parallel_of(
+        s: &Ellipsoid<N>,
+        start: &Point3<N>,
+        sense: Sense,
+        resolution: N,
+    ) -> Option<Self> {
+        let height = s.on_axes(&s.frame.coordinates(start)).z;
+        let section = s.section(&s.axes[2], height);
+        let [long, short] = section.radii;
+        let [x, y, _] = s.conjugate_radii();
+        let frame = Frame::toward(section.centre, x.cross(&y).unit(), long);
+        let radii = [long.length(), short.length()];
+        let is_off_axis = radii[1].is_beyond(resolution.max(N::ROUNDING * s.circumradius()));
+        is_off_axis.then(|| Self::ellipse(start, frame, radii, sense))
     }
 
     /// The ellipse through `start` about the centre of a frame, once round.
@@ -340,7 +388,7 @@ impl<N: Float> SurfacePath<N> {
     }
 
     /// The length.
-    pub(super) fn length(&self) -> N {
+    pub fn length(&self) -> N {
         self.length
     }
 

@@ -33,16 +33,55 @@ pub(crate) fn eccentric_angle<N: Float>([x, y]: [N; 2], [a, b]: [N; 2]) -> N {
     (y / b).atan2(x / a)
 }
 
+/// The axes of the ellipse with two conjugate axes, the longer one first, by Rytz's construction: the
+/// angle at which the radius is perpendicular to the tangent.
+pub fn perpendicular_axes<N: Float>(p: Vector3<N>, q: Vector3<N>) -> [Vector3<N>; 2] {
+    let square = p.length_squared() - q.length_squared();
+    let (sin, cos) = (N::HALF * (N::TWO * p.dot(&q)).atan2(square)).sin_cos();
+    [p * cos + q * sin, q * cos - p * sin]
+}
+
+/// Σ (q/r)² - 1.
+fn beyond_radii<N: Float, S: Analytic<Float = N>, const K: usize>(q: [S; K], radii: [N; K]) -> S {
+    let parts = std::array::from_fn::<S, K, _>(|i| q[i].scale(N::ONE / radii[i]).square());
+    sum(parts) - S::constant(N::ONE)
+}
+
+/// The distance beyond radii to first order, smooth at the centre: Σ (q/r)² - 1 over its slope.
+pub(super) fn conjugate_level<N: Float, S: Analytic<Float = N>, const K: usize>(
+    q: [S; K],
+    radii: [N; K],
+) -> S {
+    beyond_radii(q, radii).over(conjugate_slope(q, radii))
+}
+
+/// √(|∇Σ|² + (Σ - 1)²/m²) for Σ = Σ (q/r)², with the greatest radius m.
+pub(super) fn conjugate_slope<N: Float, S: Analytic<Float = N>, const K: usize>(
+    q: [S; K],
+    radii: [N; K],
+) -> S {
+    let square = |r: N| N::TWO / (r * r);
+    let gradient = std::array::from_fn::<S, K, _>(|i| q[i].scale(square(radii[i])).square());
+    let most = radii.into_iter().fold(radii[0], N::max);
+    let beyond = beyond_radii(q, radii).scale(N::ONE / most);
+    (sum(gradient) + beyond.square()).root()
+}
+
+/// The sum of some terms.
+fn sum<S: Analytic, const K: usize>(parts: [S; K]) -> S {
+    let [first, rest @ ..] = &parts[..] else {
+        return S::constant(S::Float::ZERO);
+    };
+    rest.iter().fold(*first, |sum, part| sum + *part)
+}
+
 impl<N: Float> EllipticCylinder<N> {
     /// The cylinder o + x cos u + y sin u + v z with conjugate axes x, y and z; x is the longer axis of
     /// its cross section.
     pub fn with_axes(o: Point3<N>, [x, y, z]: [Vector3<N>; 3]) -> Self {
         let along = z.unit();
         let [p, q] = [x, y].map(|axis| axis - along * along.dot(&axis));
-        // Rytz's construction: the angle at which the radius is perpendicular to the tangent.
-        let square = p.length_squared() - q.length_squared();
-        let (sin, cos) = (N::HALF * (N::TWO * p.dot(&q)).atan2(square)).sin_cos();
-        let (long, short) = (p * cos + q * sin, q * cos - p * sin);
+        let [long, short] = perpendicular_axes(p, q);
         Self {
             frame: Frame::toward(o, along, long),
             radii: [long.length(), short.length()],
@@ -52,23 +91,13 @@ impl<N: Float> EllipticCylinder<N> {
     /// The signed distance to first order: (ρ² - 1)/√(|∇ρ²|² + (ρ² - 1)²/m²), which is smooth on the
     /// axis; m is the greater radius.
     pub(super) fn level<S: Analytic<Float = N>>(&self, p: [S; 3]) -> S {
-        let q = self.frame.local(p);
-        let beyond = self.beyond(q);
-        beyond.over(self.slope(q))
-    }
-
-    /// ρ² - 1.
-    fn beyond<S: Analytic<Float = N>>(&self, [x, y, _]: [S; 3]) -> S {
-        let [a, b] = self.radii;
-        x.scale(N::ONE / a).square() + y.scale(N::ONE / b).square() - S::constant(N::ONE)
+        let [x, y, _] = self.frame.local(p);
+        conjugate_level([x, y], self.radii)
     }
 
     /// The ratio of ρ² - 1 to the level.
-    pub(super) fn slope<S: Analytic<Float = N>>(&self, q: [S; 3]) -> S {
-        let [a, b] = self.radii;
-        let gradient = [(q[0], a), (q[1], b)].map(|(x, r)| x.scale(N::TWO / (r * r)).square());
-        let beyond = self.beyond(q).scale(N::ONE / a.max(b));
-        (gradient[0] + gradient[1] + beyond.square()).root()
+    pub(super) fn slope<S: Analytic<Float = N>>(&self, [x, y, _]: [S; 3]) -> S {
+        conjugate_slope([x, y], self.radii)
     }
 
     /// The signed distance of a point in the surface's frame.

@@ -2,6 +2,7 @@
 
 use super::bivariate_trig_poly::BivariateTrigPoly;
 use super::curve::{Circle, Conic, Curve, Ellipse, Hyperbola, Line};
+use super::ellipsoid::Ellipsoid;
 use super::elliptic_surface::{EllipticCone, EllipticCylinder};
 use super::frame::Frame;
 use super::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
@@ -68,6 +69,16 @@ impl<N: Float> EllipticCone<N> {
     }
 }
 
+impl<N: Float> Ellipsoid<N> {
+    fn to_f64(self) -> Ellipsoid {
+        Ellipsoid {
+            frame: self.frame.to_f64(),
+            radii: self.radii.map(N::rounded),
+            axes: self.axes.map(|axis| axis.map(N::rounded)),
+        }
+    }
+}
+
 impl<N: Float> Surface<N> {
     /// The surface rounded to f64.
     pub fn to_f64(&self) -> Surface {
@@ -84,6 +95,7 @@ impl<N: Float> Surface<N> {
             Self::Torus(s) => Surface::Torus(s.to_f64()),
             Self::EllipticCylinder(s) => Surface::EllipticCylinder(s.to_f64()),
             Self::EllipticCone(s) => Surface::EllipticCone(s.to_f64()),
+            Self::Ellipsoid(s) => Surface::Ellipsoid(s.to_f64()),
         }
     }
 }

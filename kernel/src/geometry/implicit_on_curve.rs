@@ -104,6 +104,7 @@ impl<N: Float> ImplicitOnCurve<N> {
             }
             Surface::EllipticCylinder(s) => weighted([x, y, z], s.equation()),
             Surface::EllipticCone(s) => weighted([x, y, z], s.equation()),
+            Surface::Ellipsoid(s) => weighted([x, y, z], s.equation()),
         };
         Self::Line {
             powers,
@@ -177,6 +178,7 @@ fn size<N: Float>(surface: &Surface<N>, away: N) -> N {
         Surface::Torus(s) => (away + s.major.abs() + s.minor, 4),
         Surface::EllipticCylinder(s) => return weight(s.equation(), away),
         Surface::EllipticCone(s) => return weight(s.equation(), away),
+        Surface::Ellipsoid(s) => return weight(s.equation(), away),
     };
     lengths.powi(degree)
 }
@@ -205,6 +207,7 @@ fn conjugate<N: Float>(surface: &Surface<N>, [x, y, z]: [Interval<N>; 3]) -> Int
             let sum = s.radius([x, y, z]) + z;
             sum.over(s.inverse_slope([x, y, z])).scale(s.sine_squared())
         }
+        Surface::Ellipsoid(s) => s.slope([x, y, z]).scale(s.equation().1),
     }
 }
 

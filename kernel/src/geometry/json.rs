@@ -41,6 +41,13 @@ pub(crate) fn surface_value(surface: &Surface) -> Value {
             let [a, b] = s.slopes;
             with(placed(name, "apex", frame), &[("a", a), ("b", b)])
         }
+        Surface::Ellipsoid(s) => {
+            let [a, b, c] = s.radii;
+            with(
+                placed(name, "center", frame),
+                &[("a", a), ("b", b), ("c", c)],
+            )
+        }
     }
 }
 

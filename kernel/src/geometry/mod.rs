@@ -6,6 +6,7 @@ pub mod bounds;
 pub mod curve;
 pub mod curve_plane;
 pub mod curve_surface;
+pub mod ellipsoid;
 pub mod elliptic_surface;
 mod float_intersections;
 pub mod frame;

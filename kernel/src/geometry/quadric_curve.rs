@@ -36,7 +36,9 @@ impl<N: Float> Ruled<N> {
             Surface::Cone(s) => Self::Cone(*s),
             Surface::EllipticCylinder(s) => Self::EllipticCylinder(*s),
             Surface::EllipticCone(s) => Self::EllipticCone(*s),
-            Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) => return None,
+            Surface::Plane(_) | Surface::Sphere(_) | Surface::Torus(_) | Surface::Ellipsoid(_) => {
+                return None;
+            }
         })
     }
 

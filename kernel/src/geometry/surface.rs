@@ -3,6 +3,7 @@
 //! Each is oriented: its negative side is the inside of the primitive it bounds. A cone is one
 //! nappe. Angles are in radians, lengths in the part's unit.
 
+use super::ellipsoid::Ellipsoid;
 use super::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use super::frame::Frame;
 use crate::geometry::vector::Length;
@@ -150,6 +151,8 @@ pub enum Surface<N: Float = f64> {
     EllipticCylinder(EllipticCylinder<N>),
     /// One nappe of an elliptic cone.
     EllipticCone(EllipticCone<N>),
+    /// An ellipsoid.
+    Ellipsoid(Ellipsoid<N>),
 }
 
 /// The kinds of surfaces, by name.
@@ -169,6 +172,8 @@ pub enum SurfaceKind {
     EllipticCylinder,
     /// An elliptic cone.
     EllipticCone,
+    /// An ellipsoid.
+    Ellipsoid,
 }
 
 impl SurfaceKind {
@@ -182,6 +187,7 @@ impl SurfaceKind {
             Self::Torus => "torus",
             Self::EllipticCylinder => "elliptic cylinder",
             Self::EllipticCone => "elliptic cone",
+            Self::Ellipsoid => "ellipsoid",
         }
     }
 }
@@ -197,6 +203,7 @@ impl<N: Float> Surface<N> {
             Self::Torus(_) => SurfaceKind::Torus,
             Self::EllipticCylinder(_) => SurfaceKind::EllipticCylinder,
             Self::EllipticCone(_) => SurfaceKind::EllipticCone,
+            Self::Ellipsoid(_) => SurfaceKind::Ellipsoid,
         }
     }
 
@@ -210,6 +217,7 @@ impl<N: Float> Surface<N> {
             Self::Torus(s) => &s.frame,
             Self::EllipticCylinder(s) => &s.frame,
             Self::EllipticCone(s) => &s.frame,
+            Self::Ellipsoid(s) => &s.frame,
         }
     }
 
@@ -248,6 +256,7 @@ impl<N: Float> Surface<N> {
             }
             Self::EllipticCylinder(s) => s.level(p),
             Self::EllipticCone(s) => s.level(p),
+            Self::Ellipsoid(s) => s.level(p),
         }
     }
 
@@ -267,6 +276,7 @@ impl<N: Float> Surface<N> {
             }
             Self::EllipticCylinder(s) => of_equation(&q, s.equation()),
             Self::EllipticCone(s) => of_equation(&q, s.equation()),
+            Self::Ellipsoid(s) => of_equation(&q, s.equation()),
         }
     }
 
@@ -282,6 +292,7 @@ impl<N: Float> Surface<N> {
             Self::Torus(s) => (q.x.hypot(q.y) - s.major).hypot(q.z) - s.minor,
             Self::EllipticCylinder(s) => s.distance(&q),
             Self::EllipticCone(s) => s.distance(&q),
+            Self::Ellipsoid(s) => s.distance(&q),
         }
     }
 
@@ -310,6 +321,7 @@ impl<N: Float> Surface<N> {
                 Vector3::new(q.x * k, q.y * k, q.z)
             }
             Self::EllipticCylinder(s) => s.gradient(&q),
+            Self::Ellipsoid(s) => s.gradient(&q),
             Self::EllipticCone(s) => {
                 let gradient = s.gradient(&q);
                 if gradient == Vector3::zeros() {
@@ -354,6 +366,7 @@ impl<N: Float> Surface<N> {
             // The gradient is linear in the coordinates.
             Self::EllipticCylinder(s) => s.gradient(&a).dot(&b) / s.gradient(&q).length(),
             Self::EllipticCone(s) => s.gradient(&a).dot(&b) / s.gradient(&q).length(),
+            Self::Ellipsoid(s) => s.gradient(&a).dot(&b) / s.gradient(&q).length(),
         }
     }
 
@@ -362,9 +375,12 @@ impl<N: Float> Surface<N> {
         matches!(self, Self::Torus(torus) if torus.is_ring())
     }
 
-    /// Whether it is elliptic: its cross sections are ellipses.
+    /// Whether it is elliptic: the image of a round surface under an affine map.
     pub fn is_elliptic(&self) -> bool {
-        matches!(self, Self::EllipticCylinder(_) | Self::EllipticCone(_))
+        matches!(
+            self,
+            Self::EllipticCylinder(_) | Self::EllipticCone(_) | Self::Ellipsoid(_)
+        )
     }
 
     /// The points at which the surface has no normal: the apex of a cone, the poles of a torus.
@@ -372,9 +388,11 @@ impl<N: Float> Surface<N> {
         let (apex, torus) = match self {
             Self::Cone(_) | Self::EllipticCone(_) => (Some(self.frame().origin), None),
             Self::Torus(s) => (None, Some(*s)),
-            Self::Plane(_) | Self::Cylinder(_) | Self::Sphere(_) | Self::EllipticCylinder(_) => {
-                (None, None)
-            }
+            Self::Plane(_)
+            | Self::Cylinder(_)
+            | Self::Sphere(_)
+            | Self::EllipticCylinder(_)
+            | Self::Ellipsoid(_) => (None, None),
         };
         let poles = torus.into_iter().flat_map(|torus| torus.poles());
         apex.into_iter().chain(poles)
@@ -404,6 +422,10 @@ impl<N: Float> Surface<N> {
             | Self::EllipticCone(EllipticCone { slopes: radii, .. }) => {
                 [turn(eccentric_angle([q.x, q.y], *radii)), q.z]
             }
+            Self::Ellipsoid(s) => {
+                let [u, v] = s.parameters(&q);
+                [turn(u), v]
+            }
         }
     }
 
@@ -428,6 +450,7 @@ impl<N: Float> Surface<N> {
             }
             Self::EllipticCylinder(s) => f.point(s.radii[0] * cos, s.radii[1] * sin, v),
             Self::EllipticCone(s) => f.point(v * s.slopes[0] * cos, v * s.slopes[1] * sin, v),
+            Self::Ellipsoid(s) => s.point(u, v),
         }
     }
 
@@ -439,7 +462,8 @@ impl<N: Float> Surface<N> {
             | Self::Cone(_)
             | Self::Sphere(_)
             | Self::EllipticCylinder(_)
-            | Self::EllipticCone(_) => [Some(N::TAU), None],
+            | Self::EllipticCone(_)
+            | Self::Ellipsoid(_) => [Some(N::TAU), None],
             Self::Torus(s) => [Some(N::TAU), s.is_ring().then_some(N::TAU)],
         }
     }
@@ -487,7 +511,7 @@ pub(crate) fn sheets(frame: Frame) -> [Torus; 3] {
 
 /// One surface of each kind about a frame, for tests.
 #[cfg(test)]
-pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 7] {
+pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2]) -> [Surface; 8] {
     let (sin, cos) = (0.6, 0.8);
     [
         Surface::Plane(Plane { frame }),
@@ -507,6 +531,10 @@ pub(crate) fn of_every_kind(frame: Frame, radius: f64, [major, minor]: [f64; 2])
             frame,
             slopes: [0.75, 0.5],
         }),
+        Surface::Ellipsoid(
+            Ellipsoid::new(frame, [1.5 * radius, 0.75 * radius, radius])
+                .about(Vector3::new(0.48, -0.64, 0.6)),
+        ),
     ]
 }
 

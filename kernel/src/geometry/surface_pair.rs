@@ -129,8 +129,8 @@ pub enum PairMeasure {
     /// The angle between the second's axis and the spine of a torus, the first, on which the
     /// second's point lies.
     AcrossSpine,
-    /// The gap between a plane and a sphere; negative where they intersect.
-    PlaneOnSphere,
+    /// The gap between a plane and a sphere or an ellipsoid; negative where they intersect.
+    PlaneOnBall,
     /// The gap between a cylinder and a plane parallel to its axis.
     PlaneOnCylinder,
     /// The tilt of the circle in which a plane cuts a cylinder across.
@@ -147,7 +147,7 @@ pub enum PairMeasure {
     AdjacentCylinders,
     /// Two parallel cylinders: the gap by which one contains the other.
     CylinderInCylinder,
-    /// The distance of the second's point from the first: a cylinder, a sphere or a cone with both
+    /// The distance of the second's point from the first: a quadric, of which a cone has both
     /// nappes.
     PointOnQuadric,
     /// The tilt of a plane's normal or an axis against a torus, the first, at its rim.
@@ -321,7 +321,9 @@ impl<R: Enclosable> Over<R> {
                 let tubes = (self.a.tube.clone() - self.b.tube.clone()).abs();
                 between + self.sine() * self.a.size.clone() + sizes + tubes
             }
-            Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => self.elliptic_apart(kind),
+            Surface::EllipticCylinder(_) | Surface::EllipticCone(_) | Surface::Ellipsoid(_) => {
+                self.elliptic_apart(kind)
+            }
         }
     }
 
@@ -334,6 +336,7 @@ impl<R: Enclosable> Over<R> {
             Surface::EllipticCone(_) => {
                 norm(&self.away()) + elliptic::cones_apart(first, second) * self.radius.clone()
             }
+            Surface::Ellipsoid(_) => norm(&self.away()) + elliptic::ellipsoids_apart(first, second),
             _ => {
                 let drift = self.sine() * self.radius.clone();
                 self.between_axes() + drift + elliptic::sections_apart(first, second)
@@ -345,6 +348,14 @@ impl<R: Enclosable> Over<R> {
     fn half_width(&self) -> R {
         match &self.b.axes {
             Some(axes) => elliptic::half_width(axes, &self.a.direction),
+            None => self.b.size.clone(),
+        }
+    }
+
+    /// Half the width of a sphere or an ellipsoid, the second, along the normal of a plane, the first.
+    fn half_width_of_ball(&self) -> R {
+        match &self.b.axes {
+            Some(axes) => elliptic::half_width_of_ellipsoid(axes, &self.a.direction),
             None => self.b.size.clone(),
         }
     }
@@ -389,8 +400,7 @@ impl<R: Enclosable> Over<R> {
     fn point_on_quadric<N: Float>(&self, quadric: &Surface<N>) -> R {
         let away = self.away();
         if let Some(axes) = &self.a.axes {
-            let is_cone = matches!(quadric, Surface::EllipticCone(_));
-            return elliptic::distance(axes, &away, is_cone);
+            return elliptic::distance(axes, &away, quadric);
         }
         match quadric {
             Surface::Sphere(_) => norm(&away) - self.a.size.clone(),
@@ -424,7 +434,7 @@ impl<R: Enclosable> Over<R> {
             }
             PairMeasure::OffSpine => self.off_spine(),
             PairMeasure::AcrossSpine => self.across_spine() * self.radius.clone(),
-            PairMeasure::PlaneOnSphere => self.along(&self.away()).abs() - b.size.clone(),
+            PairMeasure::PlaneOnBall => self.along(&self.away()).abs() - self.half_width_of_ball(),
             PairMeasure::PlaneOnCylinder => {
                 self.along(&minus(&self.foot(), &a.point)).abs() - self.half_width()
             }

@@ -144,8 +144,7 @@ impl Polynomial {
     /// The polynomial of a surface; that of a cone has both nappes.
     pub fn new<N: Float>(kind: &Surface<N>, exact: &Coefficients<Rational>) -> Self {
         if let Some(axes) = &exact.axes {
-            let is_cone = matches!(kind, Surface::EllipticCone(_));
-            return Self::elliptic(&exact.point, axes, is_cone);
+            return Self::elliptic(&exact.point, axes, kind);
         }
         let IntegralOffset {
             components: v,
@@ -159,7 +158,7 @@ impl Polynomial {
         let across = dd.times(&vv).minus(&square(&up));
         let all = match kind {
             Surface::Plane(_) => up,
-            Surface::Sphere(_) => vv
+            Surface::Sphere(_) | Surface::Ellipsoid(_) => vv
                 .scaled(&(&b * &b))
                 .minus(&Self::constant(&a * &a * &q * &q)),
             Surface::Cylinder(_) | Surface::EllipticCylinder(_) => across
@@ -183,8 +182,13 @@ impl Polynomial {
     }
 
     /// The polynomial of an elliptic surface with a point and conjugate axes x, y and z:
-    /// (y × z · v)² + (z × x · v)², less (x × y · v)² for a cone, or the square of the volume.
-    fn elliptic(point: &[Rational; 3], axes: &ConjugateAxes<Rational>, is_cone: bool) -> Self {
+    /// (y × z · v)² + (z × x · v)², less (x × y · v)² for a cone, or the square of the volume for a
+    /// cylinder; for an ellipsoid the sum of all three, less the square of the volume.
+    fn elliptic<N: Float>(
+        point: &[Rational; 3],
+        axes: &ConjugateAxes<Rational>,
+        kind: &Surface<N>,
+    ) -> Self {
         let IntegralOffset {
             components: v,
             factor: q,
@@ -201,12 +205,14 @@ impl Polynomial {
         let [a, b, c] = normals.each_ref().map(|n| dot(n, &v));
         let square = |p: &Self| p.times(p);
         let across = square(&a).plus(&square(&b));
-        match is_cone {
-            true => across.minus(&square(&c)),
-            // The columns have the common denominator in all components: v is divided by it as well.
-            false => across.scaled(&(&all * &all)).minus(&square(&volume)),
-        }
-        .reduced()
+        // The columns have the common denominator in all components: v is divided by it as well.
+        let less_volume = |form: Self| form.scaled(&(&all * &all)).minus(&square(&volume));
+        let whole = match kind {
+            Surface::EllipticCone(_) => across.minus(&square(&c)),
+            Surface::Ellipsoid(_) => less_volume(across.plus(&square(&c))),
+            _ => less_volume(across),
+        };
+        whole.reduced()
     }
 }
 

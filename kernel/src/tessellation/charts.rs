@@ -2,8 +2,9 @@
 //!
 //! A plane is its own chart. A cylinder and a cone are projected along their axis, the cylinder as
 //! if it widened. A sphere is projected stereographically from a point outside the face. If the
-//! face has no outside, the centre is a point of the face, and a cap about it is left out. A torus
-//! that reaches its axis is mapped to a sphere, latitude by latitude. Any other torus is cut along a
+//! face has no outside, the centre is a point of the face, and a cap about it is left out. An
+//! ellipsoid is the image of a sphere. A torus that reaches its axis is mapped to a sphere, latitude by
+//! latitude. Any other torus is cut along a
 //! parallel and a circle of the tube, the seams, and unrolled. The seams exist in the chart only, and
 //! are placed away from vertices and from points where edges turn back.
 
@@ -12,6 +13,7 @@ use super::edges::{Polylines, STEEPEST, off_chord};
 use crate::brep::Brep;
 use crate::brep::locate::{FaceLocator, PointLocation};
 use crate::brep::topology::{FaceId, Sense};
+use crate::geometry::ellipsoid::Ellipsoid;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Sphere, Surface, Torus, turn};
 use nalgebra::{Point2, Point3, Vector2, Vector3};
@@ -31,6 +33,9 @@ pub(super) enum Chart {
     /// Stereographic projection; z points to its centre. If the centre is a point of the face, a
     /// cap about it, whose angular radius is given last, is not in the chart.
     Sphere(Frame, f64, Option<f64>),
+    /// Stereographic projection of the unit sphere of which an ellipsoid is the image, with axes in the
+    /// ellipsoid's frame.
+    Ellipsoid(Ellipsoid, Frame, Option<f64>),
     /// Lengths along the parallels and the tube, measured from the seams.
     Torus(Torus, Seams),
     /// Stereographic projection of the unit sphere to which a torus that reaches its axis is mapped.
@@ -68,6 +73,11 @@ impl Chart {
                 let around = Around::new(brep, face, SphericalMap::Sphere(s), lines);
                 let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
                 Self::Sphere(Frame::about(s.frame.origin, direction), s.radius, cap)
+            }
+            Surface::Ellipsoid(s) => {
+                let around = Around::new(brep, face, SphericalMap::Ellipsoid(s), lines);
+                let SphereCentre { direction, cap } = around.centre(accuracy, resolution);
+                Self::Ellipsoid(s, Frame::about(Point3::origin(), direction), cap)
             }
             Surface::Torus(s) if !s.is_ring() => {
                 let around = Around::new(brep, face, SphericalMap::Sheet(s), lines);
@@ -111,6 +121,7 @@ impl Chart {
                 let q = f.coordinates(p) / *radius;
                 (q.xy() / (1.0 - q.z)).into()
             }
+            Self::Ellipsoid(s, f, _) => projected(f, &SphericalMap::Ellipsoid(*s).direction(p)),
             Self::Sheet(s, f, _) => projected(f, &SphericalMap::Sheet(*s).direction(p)),
             Self::Torus(s, seams) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
@@ -135,11 +146,8 @@ impl Chart {
                 let part = 2.0 * radius / (1.0 + square);
                 f.point(x.x * part, x.y * part, radius - part)
             }
-            Self::Sheet(s, f, _) => {
-                let part = 2.0 / (1.0 + x.coords.norm_squared());
-                let direction = f.point(x.x * part, x.y * part, 1.0 - part).coords;
-                SphericalMap::Sheet(*s).point(&direction)
-            }
+            Self::Ellipsoid(s, f, _) => SphericalMap::Ellipsoid(*s).point(&unprojected(f, x)),
+            Self::Sheet(s, f, _) => SphericalMap::Sheet(*s).point(&unprojected(f, x)),
             Self::Torus(s, seams) => {
                 let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
                 Surface::Torus(*s).point(u, v)
@@ -156,9 +164,17 @@ impl Chart {
         }
     }
 
-    /// The point of a torus that reaches its axis in a direction of the unit sphere.
-    pub fn spherical_point(torus: &Torus, direction: &Vector3<f64>) -> Point3<f64> {
-        SphericalMap::Sheet(*torus).point(direction)
+    /// The point of the surface at the centre of a stereographic projection, with the angular radius of
+    /// the cap about it, if there is one.
+    pub fn cap(&self) -> Option<Cap> {
+        let (centre, radius) = match self {
+            Self::Sphere(f, radius, cap) => (f.point(0.0, 0.0, *radius), cap),
+            Self::Ellipsoid(s, f, cap) => (SphericalMap::Ellipsoid(*s).point(&f.z), cap),
+            Self::Sheet(s, f, cap) => (SphericalMap::Sheet(*s).point(&f.z), cap),
+            Self::Plane(_) | Self::Cylinder(..) | Self::Cone(..) | Self::Torus(..) => return None,
+        };
+        let radius = (*radius)?;
+        Some(Cap { centre, radius })
     }
 
     /// The point of a side, between its ends, that is closest to the middle of a chart that has
@@ -177,7 +193,11 @@ impl Chart {
     pub fn is_mirrored(&self, outward: Sense) -> bool {
         let own = match self {
             Self::Plane(_) | Self::Torus(..) => false,
-            Self::Cylinder(..) | Self::Cone(..) | Self::Sphere(..) | Self::Sheet(..) => true,
+            Self::Cylinder(..)
+            | Self::Cone(..)
+            | Self::Sphere(..)
+            | Self::Ellipsoid(..)
+            | Self::Sheet(..) => true,
         };
         own != (outward == Sense::Against)
     }
@@ -201,10 +221,26 @@ fn projected(f: &Frame, direction: &Vector3<f64>) -> Point2<f64> {
     (q.xy() / (1.0 - q.z)).into()
 }
 
+/// The direction with a stereographic projection.
+fn unprojected(f: &Frame, x: &Point2<f64>) -> Vector3<f64> {
+    let part = 2.0 / (1.0 + x.coords.norm_squared());
+    f.point(x.x * part, x.y * part, 1.0 - part).coords
+}
+
+/// A cap of a sphere, or of the surface of which it is the map.
+pub(super) struct Cap {
+    /// The point of the surface at its middle.
+    pub centre: Point3<f64>,
+    /// The angular radius on the sphere.
+    pub radius: f64,
+}
+
 /// A surface that is projected by way of the unit sphere.
 #[derive(Clone, Copy)]
 enum SphericalMap {
     Sphere(Sphere),
+    /// An ellipsoid, with directions in its frame.
+    Ellipsoid(Ellipsoid),
     /// A torus that reaches its axis, with the poles mapped to the poles.
     Sheet(Torus),
 }
@@ -214,6 +250,7 @@ impl SphericalMap {
     fn point(&self, d: &Vector3<f64>) -> Point3<f64> {
         match self {
             Self::Sphere(s) => s.frame.origin + d * s.radius,
+            Self::Ellipsoid(s) => s.frame.origin + s.frame.vector(&s.image(d)),
             Self::Sheet(s) => {
                 let q = s.frame.components(d);
                 let latitude = q.z.atan2(q.x.hypot(q.y));
@@ -227,6 +264,7 @@ impl SphericalMap {
     fn direction(&self, p: &Point3<f64>) -> Vector3<f64> {
         match self {
             Self::Sphere(s) => (p - s.frame.origin).normalize(),
+            Self::Ellipsoid(s) => s.on_unit_sphere(&s.frame.coordinates(p)).normalize(),
             Self::Sheet(s) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
                 let latitude = (v / s.pole_angle()).clamp(-1.0, 1.0) * (TAU / 4.0);
@@ -241,6 +279,7 @@ impl SphericalMap {
     fn radius(&self) -> f64 {
         match self {
             Self::Sphere(s) => s.radius,
+            Self::Ellipsoid(s) => s.circumradius(),
             Self::Sheet(s) => s.reach().max(s.minor),
         }
     }
@@ -248,7 +287,7 @@ impl SphericalMap {
     /// Whether a cap about a direction may be flat: it must not contain a pole of a sheet.
     fn has_flat_cap(&self, d: &Vector3<f64>) -> bool {
         match self {
-            Self::Sphere(_) => true,
+            Self::Sphere(_) | Self::Ellipsoid(_) => true,
             Self::Sheet(s) => s.frame.z.dot(d).abs() < 0.5,
         }
     }

@@ -4,7 +4,7 @@
 mod extra_points;
 
 use super::Accuracy;
-use super::charts::{Chart, Seams, signed_turn};
+use super::charts::{Cap, Chart, Seams, signed_turn};
 use super::chord_test::ChordTest;
 use super::edges::{Division, Node, Polylines};
 use crate::brep::Brep;
@@ -387,22 +387,17 @@ impl<'a> Builder<'a> {
     fn finish(mut self) -> Result<FaceTriangulation, Vec<Division>> {
         match self.fit.chart {
             Chart::Torus(torus, seams) => self.add_seams(torus, seams),
-            Chart::Cone(..) | Chart::Sphere(_, _, None) => self.add_middle(),
-            Chart::Sphere(frame, radius, Some(cap)) => {
-                self.add_middle();
-                self.add_cap(frame.point(0.0, 0.0, *radius), *cap);
-            }
-            Chart::Sheet(torus, frame, cap) => {
+            Chart::Cone(..) | Chart::Sphere(..) | Chart::Ellipsoid(..) => self.add_middle(),
+            Chart::Sheet(..) => {
                 for pole in self.fit.chart.poles().into_iter().flatten() {
                     self.add_pole(pole);
                 }
                 self.add_point(Point2::origin());
-                if let Some(cap) = cap {
-                    let centre = Chart::spherical_point(torus, &frame.z);
-                    self.add_cap(centre, *cap);
-                }
             }
             Chart::Plane(_) | Chart::Cylinder(..) => {}
+        }
+        if let Some(Cap { centre, radius }) = self.fit.chart.cap() {
+            self.add_cap(centre, radius);
         }
         self.divide_split();
         self.divide_around_corners();

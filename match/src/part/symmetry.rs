@@ -8,6 +8,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaterni
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{EdgeId, FaceId};
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Surface;
 use std::collections::BTreeSet;
@@ -90,9 +91,29 @@ pub fn axis(brep: &Brep, strokes: &[SampledEdge], radius: f64) -> Option<Frame> 
         Surface::Plane(_) => true,
         // Their cross sections are no circles.
         Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => false,
+        Surface::Ellipsoid(s) => {
+            let off = (s.frame.origin - first.origin).cross(&first.z).norm();
+            off < SAME * radius && is_of_revolution(s, &first.z)
+        }
     };
     let others = others(brep, strokes);
     (frames.iter().all(about) && others.iter().all(turned)).then_some(first)
+}
+
+/// The dual form of an ellipsoid: the sum of r rᵀ over its radii.
+fn dual_form(s: &Ellipsoid) -> Matrix3<f64> {
+    let axes = [s.frame.x, s.frame.y, s.frame.z];
+    let radii = axes.iter().zip(s.radii).map(|(axis, radius)| axis * radius);
+    radii.fold(Matrix3::zeros(), |sum, r| sum + r * r.transpose())
+}
+
+/// Whether any rotation about a direction through the centre maps an ellipsoid onto itself.
+fn is_of_revolution(s: &Ellipsoid, z: &Vector3<f64>) -> bool {
+    let (form, axial) = (dual_form(s), z * z.transpose());
+    let along = z.dot(&(form * z));
+    let across = 0.5 * (form.trace() - along);
+    let turned = (Matrix3::identity() - axial) * across + axial * along;
+    (form - turned).norm() < SAME * form.norm()
 }
 
 /// For both sides of an edge at a point: the outward normal of the face, and the direction into it.
@@ -249,6 +270,11 @@ impl<'a> Edges<'a> {
                 let is_along = along(&(turn.rotation * s.frame.x), &t.frame.x)
                     || along(&(turn.rotation * s.frame.x), &-t.frame.x);
                 at(&s.frame, &t.frame) && turned(&s.frame, &t.frame) && slopes && is_along
+            }
+            (Surface::Ellipsoid(s), Surface::Ellipsoid(t)) => {
+                let r = turn.rotation.to_rotation_matrix().into_inner();
+                let off = r * dual_form(s) * r.transpose() - dual_form(t);
+                at(&s.frame, &t.frame) && off.norm() < NEAR * dual_form(t).norm()
             }
             // A plane without a sharp edge lies between curved faces.
             (Surface::Plane(_), Surface::Plane(_)) => true,

@@ -42,6 +42,11 @@ pub fn front(brep: &Brep, face: FaceId, sight: &LineOfSight, hint: f64) -> Optio
             entry(of_line.dot(&w), of_origin.dot(&w), c, outwards)
         }
         Surface::EllipticCone(s) => elliptic_cone(s, &q, &w, outwards),
+        Surface::Ellipsoid(s) => {
+            let [origin, towards] = [&q, &w].map(|v| s.on_unit_sphere(v));
+            let c = origin.norm_squared() - 1.0;
+            entry(towards.norm_squared(), origin.dot(&towards), c, outwards)
+        }
     };
     at.is_finite().then_some(at)
 }

@@ -5,10 +5,12 @@
 
 mod curve;
 pub(crate) mod foreign;
+mod oval;
 mod part21;
 mod ruled;
 mod rules;
 mod shape;
+mod spline_net;
 mod surface;
 mod walk;
 

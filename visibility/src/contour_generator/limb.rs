@@ -11,7 +11,7 @@
 mod elliptic;
 
 use crate::camera::projection::ViewRay;
-use elliptic::{elliptic_cone_limbs, elliptic_cylinder_limbs};
+use elliptic::{ellipsoid_limb, elliptic_cone_limbs, elliptic_cylinder_limbs};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use premio_kernel::geometry::curve::{Circle, Curve, Line};
@@ -79,6 +79,7 @@ pub fn limbs(
         Surface::Torus(s) => torus_limbs(s, sight, resolution)?,
         Surface::EllipticCylinder(s) => elliptic_cylinder_limbs(s, sight, resolution, tilt),
         Surface::EllipticCone(s) => elliptic_cone_limbs(s, sight, resolution, tilt),
+        Surface::Ellipsoid(s) => ellipsoid_limb(s, sight, resolution).into_iter().collect(),
     })
 }
 
@@ -378,6 +379,8 @@ fn polar_plane(surface: &Surface, sight: &ViewRay) -> Option<Plane> {
         (Surface::EllipticCone(s), LocalSight::Eye(e) | LocalSight::Direction(e)) => {
             plane(s.gradient(&e), 0.0)
         }
+        (Surface::Ellipsoid(s), LocalSight::Eye(e)) => plane(s.gradient(&e), 1.0),
+        (Surface::Ellipsoid(s), LocalSight::Direction(d)) => plane(s.gradient(&d), 0.0),
         (Surface::Plane(_) | Surface::Torus(_), _) => None,
     }
 }
@@ -472,6 +475,7 @@ pub fn cusps(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use premio_kernel::geometry::ellipsoid::Ellipsoid;
     use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 
     fn tilted() -> Frame {
@@ -479,7 +483,7 @@ mod tests {
         Frame::toward(Point3::new(1.0, -2.0, 0.5), z, Vector3::new(1.0, 0.2, 0.0))
     }
 
-    fn surfaces() -> [Surface; 6] {
+    fn surfaces() -> [Surface; 7] {
         let frame = tilted();
         [
             Surface::Cylinder(Cylinder { frame, radius: 1.3 }),
@@ -502,6 +506,7 @@ mod tests {
                 frame,
                 slopes: [0.75, 0.5],
             }),
+            Surface::Ellipsoid(Ellipsoid::new(frame, [1.3, 0.4, 2.1])),
         ]
     }
 
@@ -537,8 +542,8 @@ mod tests {
     #[test]
     fn from_inside_there_is_no_limb() {
         let eye = ViewRay::Eye(tilted().point(0.1, 0.1, 1.0));
-        let [cylinder, cone, sphere, _, oval, oblique] = surfaces();
-        for surface in &[cylinder, cone, sphere, oval, oblique] {
+        let [cylinder, cone, sphere, _, oval, oblique, ellipsoid] = surfaces();
+        for surface in &[cylinder, cone, sphere, oval, oblique, ellipsoid] {
             assert!(limbs(surface, &eye, 1e-10, 1e-10).unwrap().is_empty());
         }
         // The other nappe's solid angle gives none either.

@@ -157,7 +157,12 @@ pub fn part_size(brep: &Brep) -> f64 {
         match brep.surface(face) {
             Surface::Sphere(s) => hull = hull.hull(&around(&s.frame, s.radius)),
             Surface::Torus(s) => hull = hull.hull(&around(&s.frame, s.circumradius())),
-            _ => {}
+            Surface::Ellipsoid(s) => hull = hull.hull(&around(&s.frame, s.circumradius())),
+            Surface::Plane(_)
+            | Surface::Cylinder(_)
+            | Surface::Cone(_)
+            | Surface::EllipticCylinder(_)
+            | Surface::EllipticCone(_) => {}
         }
     }
     let size = hull.diagonal();

@@ -115,6 +115,13 @@ impl Scene<'_> {
                 self.quadric([a, b, c], own, gradient, &mut both);
                 found.push_on_nappe(&both, &q, &w);
             }
+            Surface::Ellipsoid(s) => {
+                let [origin, towards] = [&q, &w].map(|v| s.on_unit_sphere(v));
+                let (away, a) = (origin.norm(), towards.norm_squared());
+                let (b, c) = (origin.dot(&towards), (away - 1.0) * (away + 1.0));
+                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+                self.quadric([a, b, c], own, gradient, &mut found);
+            }
             Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
         }
         found

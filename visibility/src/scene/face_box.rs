@@ -22,6 +22,18 @@ pub fn face_box(brep: &Brep, locator: &Locator<'_>, face: FaceId, resolution: f6
     };
     let hull = match brep.surface(face) {
         Surface::Sphere(s) => whole(&s.frame.origin, &s.frame.z, s.radius, 0.0),
+        Surface::Ellipsoid(s) => {
+            let reach = |i: usize| {
+                let mut axis = Vector3::zeros();
+                axis[i] = 1.0;
+                s.half_width(&s.frame.components(&axis))
+            };
+            let (o, reach) = (&s.frame.origin, [0, 1, 2].map(reach));
+            Aabb {
+                min: std::array::from_fn(|i| o[i] - reach[i]),
+                max: std::array::from_fn(|i| o[i] + reach[i]),
+            }
+        }
         // Of the inner sheet of a torus the box of the whole tube is a bound as well.
         Surface::Torus(s) => whole(&s.frame.origin, &s.frame.z, s.minor, s.major),
         // Every point of these surfaces lies on a segment between two points of the boundary. On a

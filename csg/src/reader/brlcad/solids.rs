@@ -1,5 +1,5 @@
-//! Converts BRL-CAD's solids to primitives: ellipsoids to spheres, truncated general cones to right
-//! circular cylinders and cones, tori, and polyhedra of eight corners to blocks and wedges.
+//! Converts BRL-CAD's solids to primitives: ellipsoids, truncated general cones, tori, and polyhedra of
+//! eight corners.
 
 use premio_kernel::number::rational::{Rational, to_f64};
 
@@ -19,8 +19,6 @@ pub(super) struct Solid {
 /// Why a solid has no exact counterpart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unsupported {
-    /// Its axes are not equal and perpendicular.
-    Ellipsoid,
     /// A cone whose ends are not circles.
     Elliptical,
     /// Eight corners that form neither a block nor a right-angled wedge.
@@ -41,10 +39,6 @@ impl Unsupported {
     /// The words for an error.
     pub(super) fn words(self) -> UnsupportedWords {
         let (found, expected) = match self {
-            Self::Ellipsoid => (
-                "an ellipsoid whose axes are not equal and at right angles",
-                "a sphere",
-            ),
             Self::Elliptical => (
                 "a cone whose ends are not similar",
                 "similar ellipses at both ends",
@@ -90,7 +84,7 @@ fn extent(vector: &Vector) -> Rational {
     length(vector).unwrap_or(Rational::ZERO)
 }
 
-/// An ellipsoid: its centre and three half axes.
+/// An ellipsoid: its centre and three half axes. It is a sphere if these are equal and at right angles.
 pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, Unsupported> {
     let [la, lb, lc] = [&a, &b, &c].map(extent);
     let slants = [slant(&a, &b), slant(&b, &c), slant(&c, &a)];
@@ -98,15 +92,15 @@ pub(super) fn ellipsoid([v, a, b, c]: [Vector; 4]) -> Result<Solid, Unsupported>
         .into_iter()
         .chain([unlike(&la, &lb), unlike(&la, &lc)]);
     let residual = residual.fold(0.0, f64::max);
-    if residual > MOST {
-        return Err(Unsupported::Ellipsoid);
-    }
-    let primitive = Primitive::sphere(la).map_err(Unsupported::Size)?;
-    let moves = Transform::shift(v);
+    let is_round = residual <= MOST;
+    let primitive = match is_round {
+        true => Primitive::sphere(la),
+        false => Primitive::ellipsoid([a, b, c]),
+    };
     Ok(Solid {
-        primitive,
-        moves,
-        residual,
+        primitive: primitive.map_err(Unsupported::Size)?,
+        moves: Transform::shift(v),
+        residual: if is_round { residual } else { 0.0 },
     })
 }
 

@@ -1,6 +1,7 @@
 //! `.json`: the tree itself.
 
 mod contours;
+mod ellipsoid;
 mod figure;
 mod oblique;
 mod polyhedron;
@@ -60,7 +61,7 @@ const OPERATIONS: [(&str, SolidOperation); 4] = [
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
-const PRIMITIVES: [(&str, &[&str]); 11] = [
+const PRIMITIVES: [(&str, &[&str]); 12] = [
     ("block", &["size"]),
     ("wedge", &["size"]),
     ("cylinder", &["r", "h"]),
@@ -72,6 +73,7 @@ const PRIMITIVES: [(&str, &[&str]); 11] = [
     ("revolution", &["figure", "angle"]),
     ("polyhedron", &["points", "faces"]),
     ("oblique_frustum", &["x", "y", "z", "top"]),
+    ("ellipsoid", &["x", "y", "z"]),
 ];
 
 /// A pending step; the solids created so far are on a stack.
@@ -200,6 +202,10 @@ impl<'a> Reader<'a> {
             "oblique_frustum" => {
                 let frustum = oblique::oblique_frustum(fields)?;
                 Some(self.builder.primitive(frustum))
+            }
+            "ellipsoid" => {
+                let ellipsoid = ellipsoid::ellipsoid(fields)?;
+                Some(self.builder.primitive(ellipsoid))
             }
             _ => None,
         };

@@ -301,6 +301,10 @@ impl Machine {
                 let frustum = oblique_frustum(list, span)?;
                 Value::Solid(self.builder.primitive(frustum))
             }
+            Outline::Ellipsoid => {
+                let ellipsoid = ellipsoid(list, span)?;
+                Value::Solid(self.builder.primitive(ellipsoid))
+            }
         };
         self.push(value, span);
         Ok(())
@@ -330,15 +334,32 @@ impl Machine {
     }
 }
 
+/// The three tuples of a list.
+fn three_tuples(
+    list: ListValue,
+    expected: &'static str,
+    span: &Range<usize>,
+) -> Result<[Spanned<TupleValue>; 3], SpannedError> {
+    let wrong = |found: String| SpannedError::input(span.clone(), found, expected);
+    let [tuples] = <[Vec<Spanned<TupleValue>>; 1]>::try_from(list.parts)
+        .map_err(|parts| wrong(format!("{} lists", parts.len())))?;
+    <[Spanned<TupleValue>; 3]>::try_from(tuples)
+        .map_err(|tuples| wrong(format!("{} tuples", tuples.len())))
+}
+
+/// An ellipsoid by its conjugate radii.
+fn ellipsoid(list: ListValue, span: &Range<usize>) -> Result<Primitive, SpannedError> {
+    let expected = "three conjugate radii `(x, y, z)`";
+    let [x, y, z] = three_tuples(list, expected, span)?;
+    Primitive::ellipsoid([point(x)?, point(y)?, point(z)?])
+        .map_err(|error| bad_length(error, None, span.clone()))
+}
+
 /// An oblique frustum by its axes. The third may have the size of the top after its coordinates.
 fn oblique_frustum(list: ListValue, span: &Range<usize>) -> Result<Primitive, SpannedError> {
     let expected = "three axes `(x, y, z)`; the third is the centre of the top, with its size after \
                     the coordinates unless it is 1";
-    let wrong = |found: String| SpannedError::input(span.clone(), found, expected);
-    let [tuples] = <[Vec<Spanned<TupleValue>>; 1]>::try_from(list.parts)
-        .map_err(|parts| wrong(format!("{} lists", parts.len())))?;
-    let [x, y, z] = <[Spanned<TupleValue>; 3]>::try_from(tuples)
-        .map_err(|tuples| wrong(format!("{} tuples", tuples.len())))?;
+    let [x, y, z] = three_tuples(list, expected, span)?;
     let (third, top) = match plain::<4>(&z) {
         Some([a, b, c, top]) => ([a, b, c], top),
         None => (point(z)?, Rational::ONE),

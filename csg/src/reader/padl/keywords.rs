@@ -164,6 +164,7 @@ pub(super) enum Outline {
     Polygon,
     Polyhedron,
     ObliqueFrustum,
+    Ellipsoid,
 }
 
 impl Outline {
@@ -172,6 +173,7 @@ impl Outline {
             Self::Polygon => "PGN",
             Self::Polyhedron => "POLY",
             Self::ObliqueFrustum => "OBL",
+            Self::Ellipsoid => "ELL",
         }
     }
 }
@@ -190,9 +192,9 @@ pub(super) enum Predefined {
 }
 
 /// All predefined words, in the spelling of messages.
-pub(super) const PREDEFINED: [&str; 17] = [
+pub(super) const PREDEFINED: [&str; 18] = [
     "sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR", "SQU", "CIR", "PGN", "OFF", "PRI",
-    "REV", "POLY", "OBL", "HULL",
+    "REV", "POLY", "OBL", "ELL", "HULL",
 ];
 
 impl Predefined {
@@ -212,6 +214,7 @@ impl Predefined {
             "PGN" => Self::Outline(Outline::Polygon),
             "POLY" => Self::Outline(Outline::Polyhedron),
             "OBL" => Self::Outline(Outline::ObliqueFrustum),
+            "ELL" => Self::Outline(Outline::Ellipsoid),
             "HULL" => Self::Hull,
             "PI" => Self::Pi,
             "FOR" => Self::For,

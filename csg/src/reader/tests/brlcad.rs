@@ -23,6 +23,10 @@ fn round_solids() {
     let ball = solid("ell V {1 2 3} A {0 4 0} B {-4 0 0} C {0 0 4}");
     assert_eq!(ball.primitive, Primitive::sphere(4.into()).unwrap());
     assert_eq!(ball.motion.offset(), &n([1, 2, 3]));
+    let egg = solid("ell V {1 2 3} A {0 4 0} B {-2 0 0} C {0 1 4}");
+    let radii = [[0, 4, 0], [-2, 0, 0], [0, 1, 4]].map(n);
+    assert_eq!(egg.primitive, Primitive::ellipsoid(radii).unwrap());
+    assert_eq!(egg.motion.offset(), &n([1, 2, 3]));
     let rod = solid("tgc V {1 0 0} H {-10 0 0} A {0 3 0} B {0 0 3} C {0 3 0} D {0 0 3}");
     assert_eq!(
         rod.primitive,
@@ -174,7 +178,7 @@ fn elliptic_and_oblique_cones() {
 
 #[test]
 fn what_is_not_ours() {
-    assert_snapshot!(asc("put e ell V {0 0 0} A {1 0 0} B {0 2 0} C {0 0 1}"), @"part:1:7: found `e`, an ellipsoid whose axes are not equal and at right angles, expected a sphere");
+    assert_snapshot!(asc("put e ell V {0 0 0} A {1 0 0} B {0 2 0} C {1 2 0}"), @"part:1:7: found `e`, a solid of wrong size: three axes must not lie in one plane, expected a solid of positive size");
     assert_snapshot!(asc("put e tgc V {0 0 0} H {0 0 1} A {1 0 0} B {0 2 0} C {1 0 0} D {0 1 0}"), @"part:1:7: found `e`, a cone whose ends are not similar, expected similar ellipses at both ends");
     assert_snapshot!(asc("put t tor V {0 0 0} H {0 0 1} r_a 1 r_h 0"), @"part:1:7: found `t`, a solid of wrong size: the minor radius must be greater than zero, expected a solid of positive size");
     assert_snapshot!(asc("put a arb8 V1 {0 0 0} V2 {1 0 0} V3 {1 1 0} V4 {0 1 0} V5 {0 0 1} V6 {1 0 1} V7 {1 1 2} V8 {0 1 1}"), @"part:1:7: found `a`, a polyhedron of eight corners, expected a block or a right-angled wedge");

@@ -86,7 +86,7 @@ fn csg_nodes() {
 
 #[test]
 fn csg_matrices() {
-    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { sphere(1); }"), @"part:1:12: found a map that changes the shape of spheres or revolutions, expected cylinders, cones, prisms or plane faces, or a scale equal in all directions (with `--facets all` circles are read as OpenSCAD's polygons)");
+    assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,3,0,0],[0,0,1,0],[0,0,0,1]]) { rotate_extrude() { multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { circle(1); } } }"), @"part:1:12: found a map that changes the shape of revolutions, expected spheres, cylinders, cones, prisms or plane faces, or a scale equal in all directions (with `--facets all` circles are read as OpenSCAD's polygons)");
     assert_snapshot!(csg("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) { cube(1); }"), @"part:1:43: found a list, expected the last row [0, 0, 0, 1] of an affine map");
     assert_snapshot!(csg("multmatrix([[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { cube(1); }"), @"part:1:13: found a list of 3, expected a row of four numbers");
 }
@@ -96,7 +96,7 @@ fn json_values() {
     assert_snapshot!(json(r#"{"prim":"sphere","r":-1}"#), @"part:1:22: found the value -1, expected a radius greater than zero");
     assert_snapshot!(json(r#"{"prim":"block","size":[1,0,2]}"#), @"part:1:27: found the value 0, expected a size along y greater than zero");
     assert_snapshot!(json(r#"{"prim":"sphere","radius":1}"#), @"part:1:18: found the unknown key `radius`, expected one of `prim`, `transform`, `r` (did you mean `r`?)");
-    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron", "oblique_frustum" (did you mean `sphere`?)"#);
+    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron", "oblique_frustum", "ellipsoid" (did you mean `sphere`?)"#);
     assert_snapshot!(json(r#"{"op":"union"}"#), @"part:1:14: found an object without `children`, expected the key `children`");
     assert_snapshot!(json(r#"{"op":"union","children":{}}"#), @"part:1:26: found an object, expected an array of solids");
     assert_snapshot!(json(r#"{"op":"union","children":[1]}"#), @"part:1:27: found the number `1`, expected a solid: an object with `op` or `prim`");

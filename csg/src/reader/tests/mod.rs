@@ -72,6 +72,12 @@ fn contains(primitive: &Primitive, [x, y, z]: [f64; 3]) -> bool {
             let size = 1.0 + (f(frustum.top()) - 1.0) * q.z;
             (0.0..=1.0).contains(&q.z) && q.x.hypot(q.y) <= size
         }
+        Primitive::Ellipsoid { radii } => {
+            let columns = radii.vectors().each_ref();
+            let columns = columns.map(|radius| Vector3::from(radius.each_ref().map(f)));
+            let inverse = nalgebra::Matrix3::from_columns(&columns).try_inverse();
+            (inverse.unwrap() * Vector3::new(x, y, z)).norm() <= 1.0
+        }
     }
 }
 

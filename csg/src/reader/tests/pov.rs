@@ -135,7 +135,7 @@ fn parts_by_name() {
 #[test]
 fn what_is_not_ours() {
     assert_snapshot!(pov("sphere { 0, 1 }\nblob { threshold 0.6 component 1, 1, <0, 0, 0> }"), @"part:2:1: found the object `blob`, expected one that is exact here: `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`");
-    assert_snapshot!(pov("sphere { 0, 1 scale <1, 2, 1> }"), @"part:1:21: found a map that changes the shape of spheres or revolutions, expected cylinders, cones, prisms or plane faces, or a scale equal in all directions");
+    assert_snapshot!(pov("torus { 3, 1 scale <1, 2, 1> }"), @"part:1:20: found a map that changes the shape of revolutions, expected spheres, cylinders, cones, prisms or plane faces, or a scale equal in all directions");
     assert_snapshot!(pov("union { sphere { 0, 1 } box { -1, 1 clipped_by { sphere { 0, 1 } } } }"), @"part:1:37: found the modifier `clipped_by`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("cylinder { 0, y, 1 open }"), @"part:1:20: found the modifier `open`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found what is outside of a solid, expected a solid, or `inverse` in an intersection or a difference");

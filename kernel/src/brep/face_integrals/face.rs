@@ -11,6 +11,7 @@ use crate::brep::locate::{FaceLocator, PointLocation};
 use crate::brep::surface_path::{DirectedArc, SurfacePath};
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::geometry::curve_plane::plane_roots;
+use crate::geometry::ellipsoid::Ellipsoid;
 use crate::geometry::elliptic_surface::EllipticCylinder;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Sphere, Surface, Torus};
@@ -39,7 +40,7 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
         | Surface::Cone(_)
         | Surface::EllipticCylinder(_)
         | Surface::EllipticCone(_) => (N::ZERO, N::ZERO),
-        Surface::Sphere(_) => (-N::PI / N::TWO, N::ZERO),
+        Surface::Sphere(_) | Surface::Ellipsoid(_) => (-N::PI / N::TWO, N::ZERO),
         Surface::Torus(t) if t.is_ring() => (-N::PI, opposite_parallel(brep, t, &coedges)),
         Surface::Torus(t) => (-t.pole_angle(), N::ZERO),
     };
@@ -62,10 +63,10 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
         | Surface::Cone(_)
         | Surface::EllipticCylinder(_)
         | Surface::EllipticCone(_) => boundary_sum(brep, face, &d, &|_| Vec::new()),
-        Surface::Sphere(s) => {
+        Surface::Sphere(_) | Surface::Ellipsoid(_) => {
             let sum = boundary_sum(brep, face, &d, &|_| Vec::new());
             let whole = d.between(base, N::PI / N::TWO);
-            let opposite = s.frame.point(N::ZERO, N::ZERO, s.radius);
+            let opposite = d.ground.surface.point(N::ZERO, N::PI / N::TWO);
             let holds = holds_far(brep, face, amid, sum[0] / whole[0], &opposite);
             with_far(sum, whole, holds)
         }
@@ -118,6 +119,7 @@ fn convenient<N: Float>(
             let frame = clear_axis(brep, &s, coedges);
             Surface::Sphere(Sphere { frame, ..s })
         }
+        Surface::Ellipsoid(s) => Surface::Ellipsoid(clear_ellipsoid(brep, &s, coedges)),
         other @ (Surface::Cone(_) | Surface::Torus(_) | Surface::EllipticCone(_)) => other,
     }
 }
@@ -179,7 +181,35 @@ fn clearest<T>(ways: impl Iterator<Item = T>, clearance: impl Fn(&T) -> f64) -> 
 /// A frame of a sphere whose poles are away from the edges.
 fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> Frame<N> {
     let o: Point3<f64> = rounded(&s.frame.origin).into();
-    let points = samples(brep, coedges);
+    let directions = samples(brep, coedges).into_iter().map(|p| (p - o).unit());
+    match clear_direction(&directions.collect::<Vec<_>>()) {
+        Some(axis) => Frame::about(s.frame.origin, axis.map(N::from_f64).unit()),
+        None => s.frame,
+    }
+}
+
+/// An ellipsoid whose parameters have their poles away from the edges.
+fn clear_ellipsoid<N: Float>(
+    brep: &Brep<N>,
+    s: &Ellipsoid<N>,
+    coedges: &[CoedgeId],
+) -> Ellipsoid<N> {
+    let Surface::Ellipsoid(rounded) = Surface::Ellipsoid(*s).to_f64() else {
+        return *s;
+    };
+    let direction = |p: Point3<f64>| {
+        let local = rounded.frame.coordinates(&p);
+        rounded.on_unit_sphere(&local).unit()
+    };
+    let directions = samples(brep, coedges).into_iter().map(direction);
+    match clear_direction(&directions.collect::<Vec<_>>()) {
+        Some(axis) => s.about(axis.map(N::from_f64).unit()),
+        None => *s,
+    }
+}
+
+/// A direction far from the given ones and from their opposites.
+fn clear_direction(directions: &[Vector3<f64>]) -> Option<Vector3<f64>> {
     let axes = (0..WAYS).map(|k| {
         let (z, a) = (
             1.0 - f64::from(2 * k + 1) / f64::from(2 * WAYS),
@@ -189,13 +219,10 @@ fn clear_axis<N: Float>(brep: &Brep<N>, s: &Sphere<N>, coedges: &[CoedgeId]) -> 
         Vector3::new(across * a.cos(), across * a.sin(), z)
     });
     let clearance = |axis: &Vector3<f64>| {
-        let sines = points.iter().map(|p| (p - o).unit().cross(axis).length());
+        let sines = directions.iter().map(|d| d.cross(axis).length());
         sines.fold(1.0, f64::min)
     };
-    match clearest(axes, clearance) {
-        Some(axis) => Frame::about(s.frame.origin, axis.map(N::from_f64).unit()),
-        None => s.frame,
-    }
+    clearest(axes, clearance)
 }
 
 /// The v opposite to a parallel of a torus that is away from the edges, if there is one. It avoids

@@ -83,14 +83,17 @@ impl<N: Float> Ground<N> {
         let q = f.coordinates(&p);
         let d = f.components(&Vector3::new(j[0].d, j[1].d, j[2].d));
         let [u, mut v] = self.parameters(&p);
+        let turn =
+            |q: &Vector3<N>, d: &Vector3<N>| (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y);
         let rate = match &self.surface {
             Surface::Plane(_) => d.x,
+            Surface::Ellipsoid(s) => turn(&s.on_axes(&q), &s.on_axes(&d)),
             Surface::EllipticCylinder(EllipticCylinder { radii: [a, b], .. })
             | Surface::EllipticCone(EllipticCone { slopes: [a, b], .. }) => {
                 let turn = (q.x * d.y - q.y * d.x) / (*a * *b);
                 turn / ((q.x / *a).square() + (q.y / *b).square())
             }
-            _ => (q.x * d.y - q.y * d.x) / (q.x * q.x + q.y * q.y),
+            _ => turn(&q, &d),
         };
         if let Surface::Torus(_) = self.surface {
             v -= N::TAU * ((v - near) / N::TAU).round();

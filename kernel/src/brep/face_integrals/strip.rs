@@ -9,6 +9,7 @@
 //! - Sphere, torus: P, h and J are a + b cos v + c sin v.
 
 use super::Moments;
+use super::ellipsoid_strip::ellipsoid_strip;
 use crate::geometry::surface::Surface;
 use crate::geometry::trigonometric::{Trig1, product};
 use crate::geometry::vector::Length;
@@ -64,6 +65,7 @@ pub(super) fn strip<N: Float>(
             let jacobian = [N::ZERO, size];
             straight([c, out], jacobian, c.dot(&across) / size, m, d)
         }
+        Surface::Ellipsoid(s) => ellipsoid_strip(s, reference, u, m, d),
     }
 }
 
@@ -88,7 +90,7 @@ fn straight<N: Float>(
 }
 
 /// P, h and J of degree one in (cos v, sin v).
-fn round<N: Float>(
+pub(super) fn round<N: Float>(
     place: [Vector3<N>; 3],
     height: Trig1<N>,
     jacobian: Trig1<N>,
@@ -155,7 +157,7 @@ mod tests {
         };
         let sheets = [inner, outer, horn].map(Surface::Torus);
         let surfaces = surfaces.into_iter().chain(sheets);
-        for (surface, u) in surfaces.zip([0.3, 1.1, 2.0, 4.0, 5.5, 0.7, 2.5, 0.2, 3.3, 5.9]) {
+        for (surface, u) in surfaces.zip([0.3, 1.1, 2.0, 4.0, 5.5, 0.7, 2.5, 0.2, 3.3, 5.9, 1.7]) {
             let surface = &surface;
             let density = |v: f64| {
                 let step = 1e-5;

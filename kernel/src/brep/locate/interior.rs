@@ -7,6 +7,7 @@ use super::FaceLocator;
 use crate::brep::surface_path::{CrossingSense, DirectedArc, SurfacePath};
 use crate::brep::topology::Sense;
 use crate::geometry::surface::Surface;
+use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
@@ -88,9 +89,10 @@ impl<N: Float> FaceLocator<'_, N> {
         let mut walks = Vec::new();
         match self.surface {
             Surface::Plane(s) => walks.push(SurfacePath::straight(s, p, towards)),
-            Surface::Sphere(s) => {
-                let target = p + towards * s.radius;
-                walks.extend(SurfacePath::great_circle(&s.frame.origin, p, &target));
+            Surface::Sphere(_) | Surface::Ellipsoid(_) => {
+                let away = (p - self.surface.frame().origin).length();
+                let target = p + towards * away;
+                walks.extend(SurfacePath::central(self.surface, p, &target));
             }
             Surface::Cylinder(_)
             | Surface::Cone(_)

@@ -178,7 +178,8 @@ fn equal_tubes<N: Float>(
         Surface::Plane(_)
         | Surface::Cone(_)
         | Surface::EllipticCylinder(_)
-        | Surface::EllipticCone(_) => return None,
+        | Surface::EllipticCone(_)
+        | Surface::Ellipsoid(_) => return None,
     };
     if !predicates.coincide("equal radii", pair.how(radii), place(&t.frame.origin)) {
         return None;

@@ -38,6 +38,21 @@ fn angles<N: Float>([x, y]: [N; 2], level: N) -> [N; 2] {
     [middle - half, middle + half]
 }
 
+/// An ellipse, or the circle that it is within the resolution.
+pub(super) fn circle_or_ellipse<N: Float>(
+    frame: Frame<N>,
+    [a, b]: [N; 2],
+    predicates: &Predicates,
+) -> Curve<N> {
+    match predicates.within(a - b) {
+        true => Curve::Circle(Circle {
+            frame,
+            radius: N::HALF * (a + b),
+        }),
+        false => Curve::Ellipse(Ellipse { frame, a, b }),
+    }
+}
+
 pub(super) fn plane_elliptic_cylinder<N: Float>(
     p: &Plane<N>,
     c: &EllipticCylinder<N>,
@@ -286,15 +301,7 @@ impl<'a, N: Float> Section<'a, N> {
             Curve::Conic(Conic::about_vertex(frame, p, kappa))
         } else if kappa > N::ZERO {
             let frame = Frame::toward(tip + inner * half, normal, inner);
-            let (a, b) = (half, p / kappa.sqrt());
-            let is_round = predicates.within(a - b);
-            match is_round {
-                true => Curve::Circle(Circle {
-                    frame,
-                    radius: N::HALF * (a + b),
-                }),
-                false => Curve::Ellipse(Ellipse { frame, a, b }),
-            }
+            circle_or_ellipse(frame, [half, p / kappa.sqrt()], predicates)
         } else {
             let frame = Frame::toward(tip - inner * half, normal, inner);
             let (a, b) = (half, p / (-kappa).sqrt());

@@ -4,6 +4,7 @@
 //! over the part's extent and decided by the [`Predicates`]. The constructions use the decisions.
 
 mod contact;
+mod ellipsoid;
 mod elliptic;
 mod plane;
 mod quadric;
@@ -189,6 +190,8 @@ pub fn intersect<N: Float>(
         (S::EllipticCone(c), S::Plane(p)) => {
             elliptic::plane_elliptic_cone(p, c, &turned, predicates)
         }
+        (S::Plane(p), S::Ellipsoid(s)) => ellipsoid::plane_ellipsoid(p, s, &pair, predicates),
+        (S::Ellipsoid(s), S::Plane(p)) => ellipsoid::plane_ellipsoid(p, s, &turned, predicates),
         (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, predicates),
         (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, predicates)?,
         (S::Torus(t), _) => torus::torus_with(t, &pair, predicates)?,

@@ -53,7 +53,7 @@ pub(super) fn plane_sphere<N: Float>(
     let foot = s.frame.origin - p.frame.z * h;
     match predicates.classify_at_point(
         "plane on sphere",
-        pair.how(PairMeasure::PlaneOnSphere),
+        pair.how(PairMeasure::PlaneOnBall),
         place(&foot),
     ) {
         Side::Outside => SurfaceIntersection::nothing(),

@@ -92,6 +92,7 @@ fn polynomial_level<N: Float>(s: &Surface<N>, p: &Point3<N>, t: &Torus<N>) -> N 
             let away = (t.frame.origin - c.frame.origin).length().max(t.minor);
             N::TWO * c.sine_squared().sqrt() * away
         }
+        Surface::Ellipsoid(c) => N::TWO * c.radii.into_iter().fold(c.radii[0], N::min),
     };
     s.polynomial(p) / slope
 }
@@ -194,7 +195,8 @@ fn has_other_sheet<N: Float>(surface: &Surface<N>) -> bool {
         Surface::Plane(_)
         | Surface::Cylinder(_)
         | Surface::Sphere(_)
-        | Surface::EllipticCylinder(_) => false,
+        | Surface::EllipticCylinder(_)
+        | Surface::Ellipsoid(_) => false,
     }
 }
 
@@ -259,7 +261,7 @@ fn coaxial<N: Float>(
         Surface::Sphere(_) => {
             predicates.coincide("centre on axis", pair.how(PairMeasure::OffAxis), at)
         }
-        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => false,
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) | Surface::Ellipsoid(_) => false,
         _ => same_line(pair, at, predicates),
     };
     if !is_coaxial {
@@ -285,7 +287,9 @@ fn coaxial<N: Float>(
         }
         Surface::Sphere(s) => profile.circle(&Vector2::new(N::ZERO, up), s.radius),
         Surface::Torus(s) => profile.circle(&Vector2::new(s.major, up), s.minor),
-        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => return None,
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) | Surface::Ellipsoid(_) => {
+            return None;
+        }
     };
     let mut meeting = SurfaceIntersection::nothing();
     for ProfilePoint { at: p, tangent } in points {

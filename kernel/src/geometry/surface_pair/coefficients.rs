@@ -18,7 +18,8 @@ pub struct Coefficients<N> {
     /// The radius of a torus's tube; unused for other surfaces.
     pub tube: N,
     /// The conjugate axes of an elliptic surface, which are in place of its size: the images of the
-    /// axes of a round cylinder of radius 1, or a round cone whose half angle has the tangent 1.
+    /// axes of a round cylinder of radius 1, a round cone whose half angle has the tangent 1, or the
+    /// unit sphere.
     pub axes: Option<Box<ConjugateAxes<N>>>,
 }
 
@@ -49,10 +50,15 @@ pub(super) fn numbers<N: Float, M>(
 ) -> Coefficients<M> {
     let frame = surface.frame();
     let length = |x: N| of(x, Float::abs(x));
-    let axes = |[a, b]: [N; 2]| {
-        let axes = [(frame.x, a), (frame.y, b), (frame.z, N::ONE)];
-        let rounding = N::from_f64(SLACK) * a.max(b).max(N::ONE);
-        Some(Box::new(axes.map(|(axis, size)| {
+    // Axes that were computed together have the rounding error of the longest.
+    let axes = |[a, b, c]: [N; 3], [across, along]: [N; 2]| {
+        let axes = [
+            (frame.x, a, across),
+            (frame.y, b, across),
+            (frame.z, c, along),
+        ];
+        Some(Box::new(axes.map(|(axis, size, longest)| {
+            let rounding = N::from_f64(SLACK) * longest;
             <[N; 3]>::from(axis * size).map(|x| of(x, rounding))
         })))
     };
@@ -62,7 +68,9 @@ pub(super) fn numbers<N: Float, M>(
         Surface::Cone(c) => (c.sin / c.cos, N::ZERO),
         Surface::Sphere(s) => (s.radius, N::ZERO),
         Surface::Torus(t) => (t.major, t.minor),
-        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) => (N::ONE, N::ZERO),
+        Surface::EllipticCylinder(_) | Surface::EllipticCone(_) | Surface::Ellipsoid(_) => {
+            (N::ONE, N::ZERO)
+        }
     };
     Coefficients {
         point: <[N; 3]>::from(frame.origin).map(&length),
@@ -70,8 +78,15 @@ pub(super) fn numbers<N: Float, M>(
         size: length(size),
         tube: length(tube),
         axes: match surface {
-            Surface::EllipticCylinder(s) => axes(s.radii),
-            Surface::EllipticCone(s) => axes(s.slopes),
+            Surface::EllipticCylinder(s) => {
+                let [a, b] = s.radii;
+                axes([a, b, N::ONE], [a.max(b), N::ONE])
+            }
+            Surface::EllipticCone(s) => {
+                let [a, b] = s.slopes;
+                axes([a, b, N::ONE], [a.max(b).max(N::ONE); 2])
+            }
+            Surface::Ellipsoid(s) => axes(s.radii, [s.circumradius(); 2]),
             _ => None,
         },
     }

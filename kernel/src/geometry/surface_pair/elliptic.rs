@@ -1,10 +1,13 @@
-//! Measures of elliptic cylinders and cones, from their conjugate axes.
+//! Measures of elliptic surfaces, from their conjugate axes.
 //!
-//! Notation: x, y and z are the conjugate axes, so that a cylinder is o + x cos u + y sin u + v z and
-//! a cone o + v (x cos u + y sin u + z); q are the coordinates of a point in these axes, relative to o.
+//! Notation: x, y and z are the conjugate axes, so that a cylinder is o + x cos u + y sin u + v z,
+//! a cone o + v (x cos u + y sin u + z), and an ellipsoid the image of the unit sphere; q are the
+//! coordinates of a point in these axes, relative to o.
 
 use super::{cross, dot, norm};
+use crate::geometry::surface::Surface;
 use crate::number::enclosable::Enclosable;
+use crate::number::float::Float;
 
 /// The conjugate axes of an elliptic surface.
 pub type ConjugateAxes<R> = [[R; 3]; 3];
@@ -15,6 +18,12 @@ pub(super) fn half_width<R: Enclosable>([x, y, z]: &ConjugateAxes<R>, n: &[R; 3]
     let across = std::array::from_fn(|i| n[i].clone() - along.clone() * z[i].clone());
     let [u, v] = [x, y].map(|axis| dot(&across, axis));
     (u.clone() * u + v.clone() * v).sqrt().over(norm(n))
+}
+
+/// Half the width of an ellipsoid along a normal.
+pub(super) fn half_width_of_ellipsoid<R: Enclosable>(axes: &ConjugateAxes<R>, n: &[R; 3]) -> R {
+    let rates = axes.each_ref().map(|axis| dot(n, axis));
+    norm(&rates).over(norm(n))
 }
 
 /// The dual form of a cone, x xᵀ + y yᵀ - z zᵀ: the normals of its tangent planes are its zeros.
@@ -47,26 +56,56 @@ fn gradients<R: Enclosable>([x, y, z]: &ConjugateAxes<R>) -> ConjugateAxes<R> {
     [over(across), over(cross(z, x)), over(cross(x, y))]
 }
 
-/// The distance of a point, by its offset from o, from a cylinder or from both nappes of a cone, to
-/// first order. That from a cylinder is smooth on the axis.
-pub(super) fn distance<R: Enclosable>(axes: &ConjugateAxes<R>, away: &[R; 3], is_cone: bool) -> R {
+/// The distance of a point, by its offset from o, from a surface of the kind of `kind`, to first order:
+/// from a cylinder, from both nappes of a cone, or from an ellipsoid. Those from a cylinder and from an
+/// ellipsoid are smooth on the axis and at the centre.
+pub(super) fn distance<N: Float, R: Enclosable>(
+    axes: &ConjugateAxes<R>,
+    away: &[R; 3],
+    kind: &Surface<N>,
+) -> R {
     let gradients = gradients(axes);
     let q = gradients.each_ref().map(|g| dot(g, away));
-    let [x, y, z] = q.each_ref().map(|c| c.clone() * c.clone());
-    let rest = if is_cone { z } else { R::constant(1.0) };
-    let beyond = x + y - rest;
-    let steep: [R; 3] = std::array::from_fn(|i| {
-        let [x, y, z] = [0, 1, 2].map(|k| gradients[k][i].clone() * q[k].clone());
-        if is_cone { x + y - z } else { x + y }
-    });
-    let slope = R::constant(4.0) * dot(&steep, &steep);
-    let slope = if is_cone {
-        slope
-    } else {
-        let [x, y, _] = gradients.each_ref().map(|g| dot(g, g));
-        slope + beyond.clone() * beyond.clone() * (x + y)
+    // The form is x² + y² + weight z², which on the surface is `level`.
+    let (weight, level) = match kind {
+        Surface::EllipticCone(_) => (-1.0, 0.0),
+        Surface::Ellipsoid(_) => (1.0, 1.0),
+        _ => (0.0, 1.0),
     };
+    let weights = [1.0, 1.0, weight].map(R::constant);
+    let weighted: [R; 3] = std::array::from_fn(|k| weights[k].clone() * q[k].clone());
+    let beyond = dot(&weighted, &q) - R::constant(level);
+    let steep: [R; 3] = std::array::from_fn(|i| {
+        let across = gradients.each_ref().map(|g| g[i].clone());
+        dot(&across, &weighted)
+    });
+    let squares = gradients.each_ref().map(|g| dot(g, g));
+    let least = dot(&squares, &weights) * R::constant(level);
+    let slope = R::constant(4.0) * dot(&steep, &steep) + beyond.clone() * beyond.clone() * least;
     beyond.over(slope.sqrt())
+}
+
+/// The difference of two ellipsoids with a common centre, as a length: with the second's dual form I + E
+/// in the axes of the first, the surface moves by E_ij √(|a_i| |a_j|)/2.
+pub(super) fn ellipsoids_apart<R: Enclosable>(
+    first: &ConjugateAxes<R>,
+    second: &ConjugateAxes<R>,
+) -> R {
+    let gradients = gradients(first);
+    let sizes = first.each_ref().map(norm);
+    let second = second
+        .each_ref()
+        .map(|b| gradients.each_ref().map(|g| dot(g, b)));
+    let mut square = R::constant(0.0);
+    for i in 0..3 {
+        for j in 0..3 {
+            let [row, column] = [i, j].map(|i| second.each_ref().map(|b| b[i].clone()));
+            let unit = R::constant(if i == j { 1.0 } else { 0.0 });
+            let excess = dot(&row, &column) - unit;
+            square = square + excess.clone() * excess * sizes[i].clone() * sizes[j].clone();
+        }
+    }
+    square.sqrt() * R::constant(0.5)
 }
 
 /// The difference of the cross sections of two cylinders, as a length.

@@ -4,8 +4,8 @@
 //! derivative, D = x·(y × z). Then S·(S_u × S_v) = ρ φ_u (k + a D) with
 //! k = o·(e' × z) - g o·(x × y), and the integral of ρ by v is R = a v, or ρ²/2g.
 
+use super::spline_net::{AROUND, NetEllipse, SAME, angle_of_arcs};
 use nalgebra::{Matrix3, Point3, Vector3};
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, FRAC_PI_8, TAU};
 
 /// A surface with straight lines between similar ellipses in parallel planes.
 #[derive(Clone, Copy, Debug)]
@@ -22,51 +22,20 @@ pub struct RuledSurface {
     start: f64,
 }
 
-/// The number of control points around.
-pub const AROUND: usize = 9;
-
-/// The deviation of a control point, relative to the size, up to which it is that of an ellipse.
-const SAME: f64 = 1.0 / (1u64 << 40) as f64;
-
 impl RuledSurface {
-    /// The surface with two control points in each of nine rows, the knots of the first parameter and
-    /// the range of the second. `None` if the rows are no ellipses, or not similar ones.
+    /// The surface with two rings of control points, the parameter of their first point, and the range
+    /// of the second parameter. `None` if the rings are no ellipses, or not similar ones.
     pub fn new(
-        rows: &[[Point3<f64>; 2]; AROUND],
-        weights: &[[f64; 2]; AROUND],
-        knots: &[f64],
+        rings: &[[Point3<f64>; AROUND]; 2],
+        start: f64,
         [low, high]: [f64; 2],
     ) -> Option<Self> {
-        let is_weight = |k: usize| {
-            let expected = if k.is_multiple_of(2) {
-                1.0
-            } else {
-                FRAC_1_SQRT_2
-            };
-            weights[k].iter().all(|w| (w - expected).abs() <= SAME)
+        let radii = |ring: &[Point3<f64>; AROUND]| {
+            (ring[0] - ring[4]).norm() + (ring[2] - ring[6]).norm() + ring[0].coords.norm()
         };
-        let start = *knots.first()?;
-        let at_quarters = knots.iter().zip(0u32..);
-        let mut at_quarters = at_quarters.map(|(knot, k)| knot - start - FRAC_PI_2 * f64::from(k));
-        if !(0..AROUND).all(is_weight) || !at_quarters.all(|off| off.abs() <= SAME * TAU) {
-            return None;
-        }
-        let ellipses = [0, 1].map(|end| {
-            let centre = nalgebra::center(&rows[0][end], &rows[4][end]);
-            [centre.coords, rows[0][end] - centre, rows[2][end] - centre]
-        });
-        let [[c0, x0, y0], [c1, x1, y1]] = ellipses;
-        let size = c0.norm() + c1.norm() + x0.norm() + x1.norm() + y0.norm() + y1.norm();
-        for (end, [c, x, y]) in ellipses.iter().enumerate() {
-            let corners = [*x, x + y, *y, y - x, -x, -x - y, -y, x - y, *x];
-            let mut off = corners
-                .iter()
-                .zip(rows)
-                .map(|(d, row)| (row[end].coords - c - d).norm());
-            if !off.all(|off| off <= SAME * size) {
-                return None;
-            }
-        }
+        let size = radii(&rings[0]) + radii(&rings[1]);
+        let [lower, upper] = [0, 1].map(|end| NetEllipse::new(&rings[end], size));
+        let [(c0, x0, y0), (c1, x1, y1)] = [lower?, upper?].map(|e| (e.centre.coords, e.x, e.y));
         // The larger ellipse has the axes.
         let is_upper = x1.norm() + y1.norm() >= x0.norm() + y0.norm();
         let (x, y) = if is_upper { (x1, y1) } else { (x0, y0) };
@@ -116,10 +85,7 @@ impl RuledSurface {
 
     /// The point with the parameters of the B-spline.
     pub fn point(&self, [u, v]: [f64; 2]) -> Point3<f64> {
-        let from_start = u - self.start;
-        let middle = ((from_start / FRAC_PI_2).floor() + 0.5) * FRAC_PI_2;
-        let off = (from_start - middle) / FRAC_PI_4 * FRAC_PI_8.tan();
-        let (sin, cos) = (middle + 2.0 * off.atan()).sin_cos();
+        let (sin, cos) = angle_of_arcs(u - self.start).sin_cos();
         let rho = self.base + self.growth * v;
         self.origin + self.axes * Vector3::new(rho * cos, rho * sin, v)
     }

@@ -2,7 +2,7 @@
 
 use super::curve::{Placement, StepCurve, StepSpline};
 use super::part21::{Instances, StepEntity, StepInstance, StepReadError, StepValue};
-use super::ruled::RuledSurface;
+use super::spline_net::SplineNet;
 use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
 use std::collections::{HashMap, HashSet};
@@ -112,6 +112,19 @@ struct Entity<'i> {
     id: u32,
     name: &'i str,
     values: &'i [StepValue],
+}
+
+/// A list of rows of values, each converted.
+fn rows<T>(
+    entity: &Entity<'_>,
+    k: usize,
+    of: impl Fn(&StepValue) -> Result<T, StepReadError>,
+) -> Result<Vec<Vec<T>>, StepReadError> {
+    let row = |row: &StepValue| match row {
+        StepValue::List(values) => values.iter().map(&of).collect(),
+        _ => Err(entity.wrong("rows")),
+    };
+    entity.list(k)?.iter().map(row).collect()
 }
 
 impl<'i> Entity<'i> {
@@ -386,7 +399,7 @@ impl<'i> Reader<'i> {
         if let Some(StepInstance { parts }) = self.instances.get(&id)
             && parts.len() > 1
         {
-            return self.ruled(id, parts);
+            return self.spline_surface(id, parts);
         }
         let surface = self.entity(id)?;
         let form = match surface.name {
@@ -412,9 +425,13 @@ impl<'i> Reader<'i> {
         Ok(StepSurface { place, form })
     }
 
-    /// A rational B-spline surface between two ellipses.
-    fn ruled(&self, id: u32, parts: &'i [StepEntity]) -> Result<StepSurface, StepReadError> {
-        let expected = "a rational surface between two ellipses";
+    /// A rational B-spline surface between two ellipses, or an ellipsoid.
+    fn spline_surface(
+        &self,
+        id: u32,
+        parts: &'i [StepEntity],
+    ) -> Result<StepSurface, StepReadError> {
+        let expected = "a rational surface between two ellipses, or an ellipsoid";
         let wrong = StepReadError::Instance { id, expected };
         let part = |name: &str| {
             let part = parts.iter().find(|part| part.name == name);
@@ -428,51 +445,29 @@ impl<'i> Reader<'i> {
         let [Some(net), Some(with_knots), Some(rational)] = names.map(part) else {
             return Err(wrong);
         };
-        let pairs = |values: &'i [StepValue]| -> Result<Vec<[&'i StepValue; 2]>, StepReadError> {
-            let of = |row: &'i StepValue| match row {
-                StepValue::List(pair) if pair.len() == 2 => Ok([&pair[0], &pair[1]]),
-                _ => Err(net.wrong("rows of two")),
-            };
-            values.iter().map(of).collect()
+        let point = |value: &StepValue| match value {
+            StepValue::Instance(id) => self.point(*id),
+            _ => Err(net.wrong("points")),
         };
-        let mut points = Vec::new();
-        for pair in pairs(net.list(2)?)? {
-            let [low, high] = pair.map(|value| match value {
-                StepValue::Instance(id) => self.point(*id),
-                _ => Err(net.wrong("points")),
-            });
-            points.push([low?, high?]);
-        }
-        let mut weights = Vec::new();
-        for pair in pairs(rational.list(0)?)? {
-            let number = |value: &StepValue| match value {
-                StepValue::Number(x) => *x,
-                _ => f64::NAN,
-            };
-            weights.push(pair.map(number));
-        }
-        let degrees = [net.number(0)?, net.number(1)?];
-        let counts = [with_knots.numbers(0)?, with_knots.numbers(1)?];
-        let (knots, heights) = (with_knots.numbers(2)?, with_knots.numbers(3)?);
-        let is_ours = degrees == [2.0, 1.0]
-            && counts == [vec![3.0, 2.0, 2.0, 2.0, 3.0], vec![2.0, 2.0]]
-            && knots.len() == counts[0].len();
-        let made = (|| {
-            let points = points.try_into().ok()?;
-            let weights = weights.try_into().ok()?;
-            let heights: [f64; 2] = heights.try_into().ok()?;
-            RuledSurface::new(&points, &weights, &knots, heights)
-        })();
-        match made.filter(|_| is_ours) {
-            Some(surface) => Ok(StepSurface {
-                place: Placement {
-                    origin: Point3::origin(),
-                    x: Vector3::x(),
-                    y: Vector3::y(),
-                    z: Vector3::z(),
-                },
-                form: SurfaceForm::Ruled(surface),
-            }),
+        let weight = |value: &StepValue| match value {
+            StepValue::Number(x) => Ok(*x),
+            _ => Err(rational.wrong("numbers")),
+        };
+        let made = SplineNet {
+            points: rows(&net, 2, point)?,
+            weights: rows(&rational, 0, weight)?,
+            degrees: [net.number(0)?, net.number(1)?],
+            multiplicities: [with_knots.numbers(0)?, with_knots.numbers(1)?],
+            knots: [with_knots.numbers(2)?, with_knots.numbers(3)?],
+        };
+        let place = Placement {
+            origin: Point3::origin(),
+            x: Vector3::x(),
+            y: Vector3::y(),
+            z: Vector3::z(),
+        };
+        match made.form() {
+            Some(form) => Ok(StepSurface { place, form }),
             None => Err(wrong),
         }
     }

@@ -6,6 +6,7 @@
 //! the sheets of tori from the south pole, so that P is zero there.
 
 use super::curve::Placement;
+use super::oval::OvalSurface;
 use super::ruled::RuledSurface;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -46,6 +47,8 @@ pub enum SurfaceForm {
     /// A rational B-spline between two ellipses. Its u is the angle about them; only points are asked
     /// for by the parameters of the spline.
     Ruled(RuledSurface),
+    /// A rational B-spline of an ellipsoid, with its own latitude as v.
+    Oval(OvalSurface),
 }
 
 /// What is integrated over a face.
@@ -82,6 +85,7 @@ impl StepSurface {
                 (rho - major).hypot(q.z) - minor
             }
             SurfaceForm::Ruled(surface) => surface.distance(p),
+            SurfaceForm::Oval(surface) => surface.distance(p),
         }
     }
 
@@ -107,6 +111,7 @@ impl StepSurface {
                 origin + about * (major + minor * v.cos()) + z * (minor * v.sin())
             }
             SurfaceForm::Ruled(surface) => surface.point([u, v]),
+            SurfaceForm::Oval(surface) => surface.point([u, v]),
         }
     }
 
@@ -125,6 +130,10 @@ impl StepSurface {
                 false => Some(Pole::North),
             },
             SurfaceForm::Ruled(surface) => match surface.apex(p, tolerance)? {
+                true => Some(Pole::South),
+                false => Some(Pole::North),
+            },
+            SurfaceForm::Oval(surface) => match surface.pole(p, tolerance)? {
                 true => Some(Pole::South),
                 false => Some(Pole::North),
             },
@@ -148,13 +157,16 @@ impl StepSurface {
             SurfaceForm::Torus { major, .. } => [angle, q.z.atan2(rho - major)],
             SurfaceForm::Sheet { major, end, .. } => [angle, q.z.atan2(rho - major) + end],
             SurfaceForm::Ruled(surface) => surface.parameters(p),
+            SurfaceForm::Oval(surface) => surface.parameters(p),
         }
     }
 
     /// The derivative of u along a curve that moves by `d` at a point.
     pub fn u_speed(&self, p: &Point3<f64>, d: &Vector3<f64>) -> f64 {
-        if let SurfaceForm::Ruled(surface) = &self.form {
-            return surface.angular_speed(p, d);
+        match &self.form {
+            SurfaceForm::Ruled(surface) => return surface.angular_speed(p, d),
+            SurfaceForm::Oval(surface) => return surface.angular_speed(p, d),
+            _ => {}
         }
         let (q, d) = (self.place.local(p), self.place.turned(d));
         match self.form {
@@ -186,12 +198,15 @@ impl StepSurface {
                 minor * (major * v + minor * ((v - end).sin() + end.sin()))
             }
             SurfaceForm::Ruled(surface) => surface.area_flow([u, v]),
+            SurfaceForm::Oval(surface) => surface.area_flow([u, v]),
         }
     }
 
     fn volume_flow(&self, [u, v]: [f64; 2], about: &Point3<f64>) -> f64 {
-        if let SurfaceForm::Ruled(surface) = &self.form {
-            return surface.volume_flow([u, v], about);
+        match &self.form {
+            SurfaceForm::Ruled(surface) => return surface.volume_flow([u, v], about),
+            SurfaceForm::Oval(surface) => return surface.volume_flow([u, v], about),
+            _ => {}
         }
         let o = self.place.turned(&(self.place.origin - about));
         let (sin_u, cos_u) = u.sin_cos();
@@ -214,7 +229,7 @@ impl StepSurface {
                     [v - end, -end].map(|v| torus_flow([major, minor], v, out, o.z));
                 here - south
             }
-            SurfaceForm::Ruled(_) => 0.0,
+            SurfaceForm::Ruled(_) | SurfaceForm::Oval(_) => 0.0,
         };
         three / 3.0
     }
@@ -229,6 +244,12 @@ impl StepSurface {
     ) -> f64 {
         if let (SurfaceForm::Sheet { .. }, Pole::North) = (self.form, pole) {
             return self.flow_at_north_of_sheet(quantity, [from, to], about);
+        }
+        if let (SurfaceForm::Oval(surface), Pole::North) = (&self.form, pole) {
+            return match quantity {
+                FaceQuantity::Volume => surface.volume_at_north([from, to], about),
+                FaceQuantity::Area => surface.area_at_north([from, to]),
+            };
         }
         let (SurfaceForm::Sphere { radius }, Pole::North) = (self.form, pole) else {
             return 0.0;

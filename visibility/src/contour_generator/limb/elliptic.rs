@@ -1,10 +1,13 @@
-//! Limbs of elliptic cylinders and cones: rulings, as of the round ones of which they are images.
+//! Limbs of elliptic surfaces, which are images of those of the round ones: rulings of cylinders and
+//! cones, and an ellipse of an ellipsoid.
 
 use super::{Limb, LocalSight, half_angle, local};
 use crate::camera::projection::ViewRay;
 use nalgebra::Vector3;
-use premio_kernel::geometry::curve::{Curve, Line};
+use premio_kernel::geometry::curve::{Circle, Curve, Ellipse, Line};
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
 use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
+use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::number::predicates::Compare;
 
@@ -40,6 +43,34 @@ pub(super) fn elliptic_cylinder_limbs(
             }))
         })
         .to_vec()
+}
+
+pub(super) fn ellipsoid_limb(s: &Ellipsoid, sight: &ViewRay, resolution: f64) -> Option<Limb> {
+    // On the unit sphere the limb is a circle about the image of the eye.
+    let (pole, height) = match local(&s.frame, sight) {
+        LocalSight::Direction(d) => (-s.on_unit_sphere(&d).normalize(), 0.0),
+        LocalSight::Eye(e) => {
+            let eye = s.frame.point(e.x, e.y, e.z);
+            let distance = Surface::Ellipsoid(*s).distance(&eye);
+            if distance.is_at_most(resolution) {
+                return None;
+            }
+            let image = s.on_unit_sphere(&e);
+            let away = image.norm();
+            (image / away, 1.0 / away)
+        }
+    };
+    let section = s.section(&pole, height);
+    let [a, b] = section.radii.map(|radius| radius.norm());
+    let normal = s.frame.vector(&s.on_unit_sphere(&pole)).normalize();
+    let frame = Frame::toward(section.centre, normal, section.radii[0]);
+    Some(Limb::new(match (a - b).is_within(resolution) {
+        true => Curve::Circle(Circle {
+            frame,
+            radius: 0.5 * (a + b),
+        }),
+        false => Curve::Ellipse(Ellipse { frame, a, b }),
+    }))
 }
 
 pub(super) fn elliptic_cone_limbs(

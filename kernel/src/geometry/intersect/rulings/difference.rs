@@ -56,6 +56,7 @@ impl<N: Float> Difference<N> {
         let (squares, constant) = match other {
             Surface::EllipticCylinder(s) => s.equation(),
             Surface::EllipticCone(s) => s.equation(),
+            Surface::Ellipsoid(s) => s.equation(),
             Surface::Cylinder(s) => ([N::ONE, N::ONE, N::ZERO], s.radius * s.radius),
             Surface::Cone(s) => {
                 let across = s.cos * s.cos;

@@ -1,0 +1,508 @@
+//! Intersections of ellipsoids: with planes in closed form, with spheres and with each other over the
+//! rulings of a cone or a cylinder of their pencil.
+//!
+//! Notation: the first surface is the image of the unit sphere. In the unit sphere's space the second
+//! has the centre d and the radii 1/√m_i along the axes e_i, with m₁ <= m₂ <= m₃; y are coordinates
+//! along these. The pencil λ ↦ B - λ A of both forms is Σ q_i (y_i - t_i)² + f with q_i = m_i - λ,
+//! t_i = m_i d_i/q_i and f(λ) = λ - 1 - λ Σ m_i d_i²/q_i. It is a cone about t where f = 0. Between m₁
+//! and m₂, and between m₂ and m₃, f changes its sign, so each interval has a real cone about e₁ or e₃.
+//! If d_i = 0, λ = m_i is a cylinder along e_i; where a second term vanishes too, it is two planes.
+//! After Levin (1976).
+
+use super::elliptic::circle_or_ellipse;
+use super::plane::plane_sphere;
+use super::quadric::over_first;
+use super::{IntersectionError, SurfaceIntersection, place};
+use crate::geometry::ellipsoid::Ellipsoid;
+use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Plane, Surface};
+use crate::geometry::surface_pair::{Carrier, PairMeasure, SurfacePair};
+use crate::geometry::vector::Length;
+use crate::number::bisection::bisect;
+use crate::number::float::Float;
+use crate::number::predicates::{Predicates, Side};
+use nalgebra::{Point3, Vector3};
+
+pub(super) fn plane_ellipsoid<N: Float>(
+    p: &Plane<N>,
+    s: &Ellipsoid<N>,
+    pair: &SurfacePair<'_, N>,
+    predicates: &Predicates,
+) -> SurfaceIntersection<N> {
+    let f = &s.frame;
+    let level = (p.frame.origin - f.origin).dot(&p.frame.z);
+    // In the unit sphere's space the plane is at the distance `height` along `normal`.
+    let image = s.image(&f.components(&p.frame.z));
+    let half_width = image.length();
+    let (normal, height) = (image / half_width, level / half_width);
+    let touch = f.origin + f.vector(&s.image(&(normal * N::ONE.copysign(level))));
+    let side = pair.how(PairMeasure::PlaneOnBall);
+    match predicates.classify_at_point("plane on ellipsoid", side, place(&touch)) {
+        Side::Outside => SurfaceIntersection::nothing(),
+        Side::On => SurfaceIntersection::touch(touch),
+        Side::Inside => {
+            let section = s.section(&normal, height);
+            let [long, short] = section.radii;
+            let frame = Frame::toward(section.centre, p.frame.z, long);
+            let curve = circle_or_ellipse(frame, [long.length(), short.length()], predicates);
+            let mut meeting = SurfaceIntersection::nothing();
+            meeting.add(curve, false, pair.extent);
+            meeting
+        }
+    }
+}
+
+/// Two surfaces of which each is a sphere or an ellipsoid.
+pub(super) fn balls<N: Float>(
+    pair: &SurfacePair<'_, N>,
+    predicates: &Predicates,
+) -> Result<SurfaceIntersection<N>, IntersectionError> {
+    let (Some(first), Some(second)) = (as_ellipsoid(pair.a.surface), as_ellipsoid(pair.b.surface))
+    else {
+        return Ok(SurfaceIntersection::nothing());
+    };
+    let pencil = Pencil::new(first, &second);
+    if let Some(conics) = pencil.conics(pair, predicates) {
+        return Ok(conics);
+    }
+    if let Some(touches) = pencil.touches_in_symmetry(pair, predicates) {
+        return Ok(touches);
+    }
+    let mut meeting = SurfaceIntersection::nothing();
+    for ruled in pencil.ruled_members() {
+        let base = Carrier::constructed(&ruled);
+        let over = over_first(&SurfacePair::new(base, pair.a, pair.extent), predicates)?;
+        append(&mut meeting, over, predicates);
+    }
+    Ok(meeting)
+}
+
+/// Adds an intersection. A singular point that both have is one, with the branches of both.
+fn append<N: Float>(
+    meeting: &mut SurfaceIntersection<N>,
+    other: SurfaceIntersection<N>,
+    predicates: &Predicates,
+) {
+    let added = meeting.branches.len();
+    meeting.branches.extend(other.branches);
+    for mut node in other.nodes {
+        for on in &mut node.on {
+            on.branch += added;
+        }
+        let mut known = meeting.nodes.iter_mut();
+        match known.find(|known| predicates.within((known.point - node.point).length())) {
+            Some(known) => known.on.extend(node.on),
+            None => meeting.nodes.push(node),
+        }
+    }
+}
+
+/// A sphere or an ellipsoid as an ellipsoid.
+fn as_ellipsoid<N: Float>(surface: &Surface<N>) -> Option<Ellipsoid<N>> {
+    match surface {
+        Surface::Ellipsoid(s) => Some(*s),
+        Surface::Sphere(s) => Some(Ellipsoid::new(s.frame, [s.radius; 3])),
+        _ => None,
+    }
+}
+
+/// The pencil of two ellipsoids, in the space in which the first is the unit sphere.
+struct Pencil<N: Float> {
+    first: Ellipsoid<N>,
+    /// e₁, e₂, e₃.
+    axes: [Vector3<N>; 3],
+    /// m.
+    forms: [N; 3],
+    /// d.
+    centre: [N; 3],
+}
+
+/// A member of the pencil: λ by its distances q from the m_i, none of which cancels.
+#[derive(Clone, Copy)]
+struct Member<N: Float> {
+    level: N,
+    excess: [N; 3],
+}
+
+impl<N: Float> Pencil<N> {
+    fn new(first: Ellipsoid<N>, second: &Ellipsoid<N>) -> Self {
+        let unit = |v: &Vector3<N>| first.on_unit_sphere(v);
+        let centre = unit(&first.frame.coordinates(&second.frame.origin));
+        let f = &second.frame;
+        let axes = [f.x, f.y, f.z].map(|axis| first.frame.components(&axis));
+        let axes = std::array::from_fn(|i| unit(&(axes[i] * second.radii[i])));
+        let image = Ellipsoid::with_axes(Point3::from(centre), axes);
+        let f = image.frame;
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| image.radii[j].total_cmp(&image.radii[i]));
+        let mut pencil = Self {
+            first,
+            axes: order.map(|i| [f.x, f.y, f.z][i]),
+            forms: order.map(|i| N::ONE / (image.radii[i] * image.radii[i])),
+            centre: [N::ZERO; 3],
+        };
+        for [i, j] in [[0, 1], [2, 1]] {
+            if pencil.is_double(i, j) {
+                pencil.turn_toward(&centre, [i, j]);
+            }
+        }
+        // A component that is rounding is none.
+        let known = |d: N| if d.abs() <= N::ROUNDING { N::ZERO } else { d };
+        pencil.centre = pencil.axes.map(|axis| known(axis.dot(&centre)));
+        pencil
+    }
+
+    /// Turns e_i and e_j so that the vector has no component along e_i.
+    fn turn_toward(&mut self, v: &Vector3<N>, [i, j]: [usize; 2]) {
+        let [x, y] = [i, j].map(|i| self.axes[i]);
+        let (a, b) = (x.dot(v), y.dot(v));
+        let size = a.hypot(b);
+        if size > N::ROUNDING {
+            self.axes[i] = (x * b - y * a) / size;
+            self.axes[j] = (x * a + y * b) / size;
+        }
+    }
+
+    /// The member at λ = m_i + s (m_j - m_i).
+    fn member(&self, [i, j]: [usize; 2], s: N) -> Member<N> {
+        let gap = self.forms[j] - self.forms[i];
+        let level = self.forms[i] + s * gap;
+        let mut excess = self.forms.map(|m| m - level);
+        excess[i] = -s * gap;
+        excess[j] = (N::ONE - s) * gap;
+        Member { level, excess }
+    }
+
+    /// The point with the coordinates y.
+    fn point(&self, y: [N; 3]) -> Point3<N> {
+        let local: Vector3<N> = (0..3).map(|i| self.axes[i] * y[i]).sum();
+        let frame = &self.first.frame;
+        frame.origin + frame.vector(&self.first.image(&local))
+    }
+
+    /// The image of a vector along e_i.
+    fn image(&self, i: usize, length: N) -> Vector3<N> {
+        let axis = self.first.image(&(self.axes[i] * length));
+        self.first.frame.vector(&axis)
+    }
+
+    /// t_i.
+    fn apex(&self, member: &Member<N>, i: usize) -> N {
+        match self.centre[i] == N::ZERO {
+            true => N::ZERO,
+            false => self.forms[i] * self.centre[i] / member.excess[i],
+        }
+    }
+
+    /// f, without the term of `left`.
+    fn rest(&self, member: &Member<N>, left: usize) -> N {
+        let kept = (0..3).filter(|&i| i != left);
+        let sum: N = kept.map(|i| self.apex(member, i) * self.centre[i]).sum();
+        (member.level - N::ONE) - member.level * sum
+    }
+
+    /// Whether two m are equal but for rounding.
+    fn is_double(&self, i: usize, j: usize) -> bool {
+        (self.forms[j] - self.forms[i]).abs() <= N::ROUNDING * self.forms[j]
+    }
+
+    /// An axis along which the pencil has an elliptic cylinder or a line, with the others.
+    fn cylinder_axis(&self) -> Option<(usize, [usize; 2])> {
+        let axes = [(0, [1, 2]), (2, [0, 1])].into_iter();
+        let mut axes = axes.filter(|&(i, others)| {
+            self.centre[i] == N::ZERO && others.iter().all(|&j| !self.is_double(i, j))
+        });
+        axes.next()
+    }
+
+    /// The two points of contact in which a cylinder of the pencil is a line.
+    fn touches_in_symmetry(
+        &self,
+        pair: &SurfacePair<'_, N>,
+        predicates: &Predicates,
+    ) -> Option<SurfaceIntersection<N>> {
+        let (i, others) = self.cylinder_axis()?;
+        let mut y = self.cylinder_centre(i, others).1;
+        let square = N::ONE - y.iter().map(|y| *y * *y).sum::<N>();
+        if square <= N::ZERO {
+            return None;
+        }
+        let mut meeting = SurfaceIntersection::nothing();
+        for side in [N::ONE, -N::ONE] {
+            y[i] = side * square.sqrt();
+            let point = self.point(y);
+            if !predicates.within(pair.b.surface.distance(&point)) {
+                return None;
+            }
+            meeting
+                .nodes
+                .extend(SurfaceIntersection::touch(point).nodes);
+        }
+        Some(meeting)
+    }
+
+    /// The ruled member whose vertex is the closest to the surfaces: a cylinder, or both nappes of a
+    /// cone.
+    fn ruled_members(&self) -> Vec<Surface<N>> {
+        if let Some((i, others)) = self.cylinder_axis() {
+            return self.cylinder(i, others).into_iter().collect();
+        }
+        let cones = [[0, 1], [1, 2]].into_iter().filter_map(|ends| {
+            let member = self.cone_member(ends)?;
+            let apex: [N; 3] = std::array::from_fn(|i| self.apex(&member, i));
+            let away = Vector3::from(apex).length();
+            Some((away, member, apex))
+        });
+        let nearest = cones.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        match nearest {
+            Some((_, member, apex)) => self.nappes(&member, apex).into(),
+            None => Vec::new(),
+        }
+    }
+
+    /// A zero of f between m_i and m_j: f times -q_i, if d_i is not zero, and times q_j, if d_j is not
+    /// zero, has no pole at the ends. `None` if its sign does not change.
+    fn cone_member(&self, [i, j]: [usize; 2]) -> Option<Member<N>> {
+        if self.is_double(i, j) {
+            return None;
+        }
+        let k = 3 - i - j;
+        let value = |s: N| {
+            let member = self.member([i, j], s);
+            let pole = |i: usize| match self.centre[i] == N::ZERO {
+                true => N::ONE,
+                false => member.excess[i].abs(),
+            };
+            let [p, q] = [i, j].map(pole);
+            let [a, b] = [i, j].map(|i| self.forms[i] * self.centre[i] * self.centre[i]);
+            let third = self.apex(&member, k) * self.centre[k];
+            let rest = member.level - N::ONE - member.level * third;
+            rest * p * q + member.level * (a * q - b * p)
+        };
+        let [first, last] = [N::ZERO, N::ONE].map(value);
+        if first * last >= N::ZERO {
+            return None;
+        }
+        let member = self.member([i, j], bisect(N::ZERO, N::ONE, first, value));
+        (member.excess[i] != N::ZERO && member.excess[j] != N::ZERO).then_some(member)
+    }
+
+    /// The member λ = m_i, and a point of its axis.
+    fn cylinder_centre(&self, i: usize, [j, k]: [usize; 2]) -> (Member<N>, [N; 3]) {
+        let mut member = self.member([i, j], N::ZERO);
+        member.excess[k] = self.forms[k] - self.forms[i];
+        let mut y = [N::ZERO; 3];
+        y[j] = self.apex(&member, j);
+        y[k] = self.apex(&member, k);
+        (member, y)
+    }
+
+    /// The cylinder along e_i, over the ellipse q_j (y_j - t_j)² + q_k (y_k - t_k)² = -f.
+    fn cylinder(&self, i: usize, [j, k]: [usize; 2]) -> Option<Surface<N>> {
+        let (member, y) = self.cylinder_centre(i, [j, k]);
+        let rest = self.rest(&member, i);
+        let radii = [j, k].map(|j| (-rest / member.excess[j]).sqrt());
+        if !radii.iter().all(|r| *r > N::ZERO) {
+            return None;
+        }
+        let axes = [
+            self.image(j, radii[0]),
+            self.image(k, radii[1]),
+            self.image(i, N::ONE),
+        ];
+        let cylinder = EllipticCylinder::with_axes(self.point(y), axes);
+        Some(Surface::EllipticCylinder(cylinder))
+    }
+
+    /// Both nappes of the cone Σ q_i (y_i - t_i)² = 0. One q has another sign than the others; its axis
+    /// is inside the cone.
+    fn nappes(&self, member: &Member<N>, apex: [N; 3]) -> [Surface<N>; 2] {
+        let q = member.excess;
+        let i = if q[1] > N::ZERO { 0 } else { 2 };
+        let [j, k] = if i == 0 { [1, 2] } else { [0, 1] };
+        let slope = |j: usize| (-q[i] / q[j]).sqrt();
+        [N::ONE, -N::ONE].map(|side| {
+            let axes = [
+                self.image(j, slope(j)),
+                self.image(k, slope(k)),
+                self.image(i, side),
+            ];
+            Surface::EllipticCone(EllipticCone::with_axes(self.point(apex), axes))
+        })
+    }
+}
+
+/// Planes of a degenerate member.
+struct PlanePair<N: Float> {
+    /// By a point and conjugate directions.
+    planes: Vec<Plane<N>>,
+    /// Whether both are one plane, so that the surfaces are tangent along its conic.
+    is_double: bool,
+    /// Whether a plane may touch the first surface, so that the point is all of its conic.
+    may_touch: bool,
+    /// The points in which the conics cross.
+    crossings: Vec<Point3<N>>,
+}
+
+impl<N: Float> Pencil<N> {
+    /// The intersection, where it consists of conics.
+    fn conics(
+        &self,
+        pair: &SurfacePair<'_, N>,
+        predicates: &Predicates,
+    ) -> Option<SurfaceIntersection<N>> {
+        let mut pairs = vec![self.radical_plane(), self.crossing_planes()];
+        for (i, others) in [(2, [0, 1]), (0, [1, 2])] {
+            pairs.extend(self.parallel_planes(i, others));
+        }
+        let found = pairs.into_iter().find_map(|planes| {
+            let conics = self.sections(&planes, pair, predicates)?;
+            Some((planes, conics))
+        });
+        let (planes, mut meeting) = found?;
+        for p in planes.crossings {
+            if predicates.within(pair.b.surface.distance(&p)) {
+                meeting.cross_at(p, predicates);
+            }
+        }
+        Some(meeting)
+    }
+
+    /// The conics in which the planes cut the first surface, if they lie on the second.
+    fn sections(
+        &self,
+        pair_of_planes: &PlanePair<N>,
+        pair: &SurfacePair<'_, N>,
+        predicates: &Predicates,
+    ) -> Option<SurfaceIntersection<N>> {
+        let mut meeting = SurfaceIntersection::nothing();
+        for plane in &pair_of_planes.planes {
+            let section = Surface::Plane(*plane);
+            let both = SurfacePair::new(Carrier::constructed(&section), pair.a, pair.extent);
+            let conic = match pair.a.surface {
+                Surface::Sphere(s) => plane_sphere(plane, s, &both, predicates),
+                _ => plane_ellipsoid(plane, &self.first, &both, predicates),
+            };
+            meeting.branches.extend(conic.branches);
+            if pair_of_planes.may_touch {
+                meeting.nodes.extend(conic.nodes);
+            }
+        }
+        let off = |p: &Point3<N>| pair.b.surface.distance(p).abs();
+        let mut worst = meeting.nodes.iter().map(|n| off(&n.point)).reduce(N::max);
+        for branch in &mut meeting.branches {
+            branch.tangent = pair_of_planes.is_double;
+            for i in 0..SAMPLES {
+                let part = (N::whole(i) + N::from_f64(0.3)) / N::whole(SAMPLES);
+                let t = branch.range[0] + (branch.range[1] - branch.range[0]) * part;
+                let off = off(&branch.curve.point(t));
+                worst = Some(worst.map_or(off, |worst: N| worst.max(off)));
+            }
+        }
+        let at = place(&self.first.frame.origin);
+        let is_held = predicates.coincide("ellipsoids meeting in conics", worst?, at);
+        is_held.then_some(meeting)
+    }
+
+    /// The plane n·y = level.
+    fn plane(&self, normal: [N; 3], level: N) -> Plane<N> {
+        let n: Vector3<N> = (0..3).map(|i| self.axes[i] * normal[i]).sum();
+        let size = n.length_squared();
+        let along: [N; 3] = std::array::from_fn(|i| normal[i] * level / size);
+        // Normals map by the inverse of the transpose.
+        let frame = &self.first.frame;
+        let normal = frame.vector(&self.first.on_unit_sphere(&n)).unit();
+        Plane {
+            frame: Frame::about(self.point(along), normal),
+        }
+    }
+
+    /// The plane of all common points of similar ellipsoids, for which all m are equal.
+    fn radical_plane(&self) -> PlanePair<N> {
+        let [m, d] = [self.forms, self.centre];
+        let square: N = (0..3).map(|i| m[i] * d[i] * d[i]).sum();
+        let level = N::HALF * (square - N::ONE + m[1]);
+        let normal = std::array::from_fn(|i| m[i] * d[i]);
+        let is_none = normal.iter().all(|n| *n == N::ZERO);
+        PlanePair {
+            planes: (!is_none)
+                .then(|| self.plane(normal, level))
+                .into_iter()
+                .collect(),
+            is_double: false,
+            may_touch: false,
+            crossings: Vec::new(),
+        }
+    }
+
+    /// The planes q₁ (y₁ - t₁)² + q₃ (y₃ - t₃)² = 0 of λ = m₂.
+    fn crossing_planes(&self) -> PlanePair<N> {
+        let mut member = self.member([1, 2], N::ZERO);
+        member.excess[0] = self.forms[0] - self.forms[1];
+        let [s, t] = [0, 2].map(|i| self.apex(&member, i));
+        let [across, along] = [0, 2].map(|i| member.excess[i].abs().sqrt());
+        let planes = match across > N::ZERO && along > N::ZERO {
+            true => [N::ONE, -N::ONE]
+                .map(|side| {
+                    let normal = [across, N::ZERO, side * along];
+                    self.plane(normal, across * s + side * along * t)
+                })
+                .into(),
+            false => Vec::new(),
+        };
+        let square = N::ONE - s * s - t * t;
+        let crossings = match square > N::ZERO {
+            true => [N::ONE, -N::ONE]
+                .map(|side| self.point([s, side * square.sqrt(), t]))
+                .into(),
+            false => Vec::new(),
+        };
+        PlanePair {
+            planes,
+            is_double: false,
+            may_touch: false,
+            crossings,
+        }
+    }
+
+    /// The planes q_i (y_i - t_i)² = -f of coaxial ellipsoids of revolution about e_i, for which the
+    /// other two m are equal: both as one, and each.
+    fn parallel_planes(&self, i: usize, [j, k]: [usize; 2]) -> Vec<PlanePair<N>> {
+        let level = N::HALF * (self.forms[j] + self.forms[k]);
+        let member = Member {
+            level,
+            excess: self.forms.map(|m| m - level),
+        };
+        let (q, t) = (member.excess[i], self.apex(&member, i));
+        if q == N::ZERO {
+            return Vec::new();
+        }
+        let mut normal = [N::ZERO; 3];
+        normal[i] = N::ONE;
+        let none = || PlanePair {
+            planes: Vec::new(),
+            is_double: false,
+            may_touch: self.is_double(j, k),
+            crossings: Vec::new(),
+        };
+        let both = PlanePair {
+            planes: vec![self.plane(normal, t)],
+            is_double: true,
+            ..none()
+        };
+        let rest = (level - N::ONE) - level * (t * self.centre[i]);
+        let half = (-rest / q).sqrt();
+        let each = match half > N::ZERO {
+            true => PlanePair {
+                planes: [t - half, t + half].map(|at| self.plane(normal, at)).into(),
+                ..none()
+            },
+            false => none(),
+        };
+        vec![both, each]
+    }
+}
+
+/// The number of points at which a conic is tested.
+const SAMPLES: i32 = 24;

@@ -111,8 +111,10 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{Deep, Figures, Grid, Near, Oblique, Parts, Rounded, Tangent, Wide};
-        const CHOICES: [ProfileChoice; 10] = [
+        use Profile::{
+            Deep, Ellipsoid, Figures, Grid, Near, Oblique, Parts, Rounded, Tangent, Wide,
+        };
+        const CHOICES: [ProfileChoice; 11] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -123,6 +125,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Rounded),
             ProfileChoice::One(Figures),
             ProfileChoice::One(Oblique),
+            ProfileChoice::One(Ellipsoid),
         ];
         &CHOICES
     }

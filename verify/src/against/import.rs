@@ -98,6 +98,11 @@ enum JsonPrimitive {
         #[serde(default = "one")]
         top: f64,
     },
+    Ellipsoid {
+        x: [f64; 3],
+        y: [f64; 3],
+        z: [f64; 3],
+    },
 }
 
 /// The size of a top that is not given.
@@ -194,6 +199,7 @@ fn primitive(primitive: JsonPrimitive) -> ModelPrimitive {
             axes: [x, y, z],
             top,
         },
+        JsonPrimitive::Ellipsoid { x, y, z } => ModelPrimitive::Ellipsoid([x, y, z]),
     }
 }
 

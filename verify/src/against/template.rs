@@ -143,6 +143,7 @@ fn call(primitive: &ModelPrimitive) -> String {
             "oblique_frustum",
             &[*a, *b, *c, *d, *e, *f, *g, *h, *i, *top],
         ),
+        ModelPrimitive::Ellipsoid(radii) => ("ellipsoid", radii.as_flattened()),
         ModelPrimitive::Block(size) => ("block", size),
         ModelPrimitive::Wedge(size) => ("wedge", size),
         ModelPrimitive::Cylinder { r, h } => ("cylinder", &[*r, *h]),

@@ -47,6 +47,8 @@ pub enum ModelPrimitive {
         /// The size of the top relative to the base.
         top: f64,
     },
+    /// An ellipsoid about the origin with these conjugate radii.
+    Ellipsoid([[f64; 3]; 3]),
 }
 
 /// A coordinate axis.

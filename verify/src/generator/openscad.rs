@@ -59,6 +59,12 @@ fn operation(op: ModelOperation) -> &'static str {
     }
 }
 
+/// A matrix that maps the coordinate axes to these.
+fn matrix(axes: [[f64; 3]; 3]) -> String {
+    let row = |i: usize| format!("[{}, {}, {}, 0]", axes[0][i], axes[1][i], axes[2][i]);
+    format!("[{}, {}, {}, [0, 0, 0, 1]]", row(0), row(1), row(2))
+}
+
 fn of_primitive(primitive: &ModelPrimitive) -> String {
     let extrusion = |corners: Vec<[f64; 2]>, h| {
         of_sweep(&ModelSweep {
@@ -86,9 +92,11 @@ fn of_primitive(primitive: &ModelPrimitive) -> String {
         ModelPrimitive::Cylinder { r, h } => frustum(r, r, h),
         ModelPrimitive::Frustum { r1, r2, h } => frustum(r1, r2, h),
         ModelPrimitive::ObliqueFrustum { axes, top } => {
-            let row = |i: usize| format!("[{}, {}, {}, 0]", axes[0][i], axes[1][i], axes[2][i]);
-            let matrix = format!("[{}, {}, {}, [0, 0, 0, 1]]", row(0), row(1), row(2));
-            block("multmatrix", &matrix, &frustum(1.0, top, 1.0))
+            block("multmatrix", &matrix(axes), &frustum(1.0, top, 1.0))
+        }
+        ModelPrimitive::Ellipsoid(radii) => {
+            let ball = format!("sphere({}, r = 1);\n", circles(CircleForm::Circle));
+            block("multmatrix", &matrix(radii), &ball)
         }
         ModelPrimitive::Sphere(r) => format!("sphere({}, r = {r});\n", circles(CircleForm::Circle)),
         ModelPrimitive::Torus { major, minor } => {

@@ -188,7 +188,14 @@ fn lengths(primitive: &ModelPrimitive) -> Vec<f64> {
         ModelPrimitive::ObliqueFrustum { axes, top } => {
             axes.as_flattened().iter().copied().chain([top]).collect()
         }
+        ModelPrimitive::Ellipsoid(radii) => radii.as_flattened().to_vec(),
     }
+}
+
+/// Whether vectors are not in one plane.
+fn span_space(vectors: [[f64; 3]; 3]) -> bool {
+    let [x, y, z] = vectors.map(nalgebra::Vector3::from);
+    x.cross(&y).dot(&z) != 0.0
 }
 
 /// The same primitive with other lengths; `None` if these are invalid.
@@ -204,15 +211,16 @@ fn with_lengths(primitive: &ModelPrimitive, lengths: &[f64]) -> Option<ModelPrim
             let axes = [[a, b, c], [d, e, f], [g, h, i]];
             ModelPrimitive::ObliqueFrustum { axes, top }
         }
+        (ModelPrimitive::Ellipsoid(_), &[a, b, c, d, e, f, g, h, i]) => {
+            ModelPrimitive::Ellipsoid([[a, b, c], [d, e, f], [g, h, i]])
+        }
         _ => return None,
     };
     let sound = match changed {
         ModelPrimitive::Frustum { r1, r2, h } => r1 > 0.0 && r2 >= 0.0 && h > 0.0,
         ModelPrimitive::Torus { major, minor } => minor > 0.0 && major > minor,
-        ModelPrimitive::ObliqueFrustum { axes, top } => {
-            let [x, y, z] = axes.map(nalgebra::Vector3::from);
-            top >= 0.0 && x.cross(&y).dot(&z) != 0.0
-        }
+        ModelPrimitive::ObliqueFrustum { axes, top } => top >= 0.0 && span_space(axes),
+        ModelPrimitive::Ellipsoid(radii) => span_space(radii),
         _ => lengths.iter().all(|x| *x > 0.0),
     };
     sound.then_some(changed)

@@ -109,6 +109,7 @@ fn solid(
         ModelPrimitive::ObliqueFrustum { axes, top } => {
             Exact::oblique_frustum(axes.map(|axis| axis.map(number)), number(top))
         }
+        ModelPrimitive::Ellipsoid(radii) => Exact::ellipsoid(radii.map(|axis| axis.map(number))),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Profiles: kinds of random trees, each difficult in its own way.
 
 mod deep;
+mod ellipsoid;
 mod figures;
 mod grid;
 mod near;
@@ -38,11 +39,13 @@ pub enum Profile {
     Figures,
     /// 2 to 5 primitives, of which half are oblique frustums: elliptic cylinders and cones.
     Oblique,
+    /// 2 to 5 primitives, of which half are ellipsoids.
+    Ellipsoid,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -52,6 +55,7 @@ impl Profile {
         Self::Rounded,
         Self::Figures,
         Self::Oblique,
+        Self::Ellipsoid,
     ];
 
     /// The name, as it is written on the command line.
@@ -66,6 +70,7 @@ impl Profile {
             Self::Rounded => "rounded",
             Self::Figures => "figures",
             Self::Oblique => "oblique",
+            Self::Ellipsoid => "ellipsoid",
         }
     }
 
@@ -90,6 +95,9 @@ impl Profile {
             Self::Oblique => {
                 "2 to 5 primitives, of which half are oblique frustums: elliptic cylinders and cones"
             }
+            Self::Ellipsoid => {
+                "2 to 5 primitives, of which half are ellipsoids; some are oblique frustums"
+            }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
                 "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
@@ -112,6 +120,7 @@ impl Profile {
             Self::Rounded => rounded::model(seed),
             Self::Figures => figures::model(seed),
             Self::Oblique => oblique::model(seed),
+            Self::Ellipsoid => ellipsoid::model(seed),
         }
     }
 }
@@ -155,7 +164,7 @@ mod tests {
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,
                     Profile::Figures => 3,
-                    Profile::Oblique => 5,
+                    Profile::Oblique | Profile::Ellipsoid => 5,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }

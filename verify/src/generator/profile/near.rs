@@ -63,7 +63,7 @@ fn grown(primitive: &ModelPrimitive, by: f64) -> ModelPrimitive {
         ModelPrimitive::Cylinder { r, h } => ModelPrimitive::Cylinder { r: r + by, h },
         ModelPrimitive::Frustum { r1, r2, h } => ModelPrimitive::Frustum { r1: r1 + by, r2, h },
         ModelPrimitive::Sphere(r) => ModelPrimitive::Sphere(r + by),
-        oblique @ ModelPrimitive::ObliqueFrustum { .. } => oblique,
+        oblique @ (ModelPrimitive::ObliqueFrustum { .. } | ModelPrimitive::Ellipsoid(_)) => oblique,
         ModelPrimitive::Torus { major, minor } => ModelPrimitive::Torus {
             major,
             minor: minor + by,

@@ -36,7 +36,7 @@ fn other(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {
 }
 
 /// An oblique frustum with axes on the grid, of which x and y are sheared in one of three.
-fn oblique_frustum(random: &mut RandomChoices) -> ModelPrimitive {
+pub(super) fn oblique_frustum(random: &mut RandomChoices) -> ModelPrimitive {
     let mut shear = |is_sheared: bool, most: usize| match is_sheared {
         true => random.half(0, most) * random.sign(),
         false => 0.0,

@@ -95,6 +95,8 @@ fn port(random: &mut RandomChoices, primitive: &ModelPrimitive) -> Port {
         }
         // On the base, which is all that is known of its place.
         ModelPrimitive::ObliqueFrustum { .. } => port([0.0; 3], -90.0),
+        // At the end of its third radius, where the tangent plane is parallel to the others.
+        ModelPrimitive::Ellipsoid([_, _, z]) => port(z, 90.0),
         ModelPrimitive::Torus { major, minor } => {
             let tilt = random.choose(&[0.0, 90.0, 180.0, 90.0, 60.0, 120.0, 37.0]);
             port(on_circle([major, 0.0], minor, tilt), tilt)

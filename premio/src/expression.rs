@@ -6,7 +6,7 @@ mod operators;
 mod primitives;
 
 pub use primitives::{
-    block, cone, cylinder, frustum, oblique_frustum, polyhedron, sphere, torus, wedge,
+    block, cone, cylinder, ellipsoid, frustum, oblique_frustum, polyhedron, sphere, torus, wedge,
 };
 
 use crate::number::{ExactNumber, NumberError};

@@ -146,8 +146,8 @@ impl Expression {
         })
     }
 
-    /// The solid scaled along x, y and z by factors above zero. Cylinders and cones become elliptic;
-    /// spheres and other revolutions may be scaled equally in all directions only.
+    /// The solid scaled along x, y and z by factors above zero. Cylinders and cones become elliptic,
+    /// and spheres ellipsoids; other revolutions may be scaled equally in all directions only.
     ///
     /// # Examples
     ///
@@ -156,7 +156,9 @@ impl Expression {
     ///
     /// let solid = cylinder(1, 5).stretch([3, 2, 1]).evaluate()?;
     /// assert!((solid.volume() - 30.0 * std::f64::consts::PI).abs() < 1e-12);
-    /// assert!(sphere(1).stretch([3, 2, 1]).evaluate().is_err());
+    /// let ellipsoid = sphere(1).stretch([3, 2, 1]).evaluate()?;
+    /// assert!((ellipsoid.volume() - 8.0 * std::f64::consts::PI).abs() < 1e-12);
+    /// assert!(torus(3, 1).stretch([3, 2, 1]).evaluate().is_err());
     /// # Ok::<(), premio::Error>(())
     /// ```
     #[must_use]

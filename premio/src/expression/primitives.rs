@@ -129,6 +129,26 @@ pub fn oblique_frustum<N: Into<ExactNumber>>(
     }))
 }
 
+/// An ellipsoid centred at the origin, by three conjugate radii: the points p x + q y + h z with
+/// p² + q² + h² <= 1.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let solid = ellipsoid([5, 0, 0], [0, 3, 0], [0, 0, 2]).evaluate()?;
+/// assert!((solid.volume() - 40.0 * std::f64::consts::PI).abs() < 1e-11);
+/// // Radii in one plane span no solid.
+/// assert!(ellipsoid([5, 0, 0], [0, 3, 0], [2, 1, 0]).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn ellipsoid<N: Into<ExactNumber>>(x: [N; 3], y: [N; 3], z: [N; 3]) -> Expression {
+    let radius = |radius: [N; 3]| numbers(radius.map(Into::into));
+    let radii = radius(x).and_then(|x| Ok([x, radius(y)?, radius(z)?]));
+    Expression::primitive(radii.and_then(|radii| Ok(Primitive::ellipsoid(radii)?)))
+}
+
 /// A sphere centred at the origin.
 ///
 /// # Examples

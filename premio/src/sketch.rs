@@ -267,7 +267,7 @@ impl Sketch {
         self.extrude_scaled(height, 1)
     }
 
-    /// The same, scaled about the z axis by a factor on the way up. Arcs beside the axis lead to elliptic
+    /// The same, scaled about the z axis by a factor on the way up. Arcs off the axis lead to elliptic
     /// cones.
     ///
     /// # Examples
@@ -277,8 +277,8 @@ impl Sketch {
     ///
     /// let pyramid = rectangle(6, 6).translate([-3, -3]).extrude_scaled(4, 0).evaluate()?;
     /// assert!((pyramid.volume() - 48.0).abs() < 1e-12);
-    /// let beside = disc(1).translate([3, 0]).extrude_scaled(2, 0).evaluate()?;
-    /// assert!((beside.volume() - 2.0 / 3.0 * std::f64::consts::PI).abs() < 1e-12);
+    /// let oblique = disc(1).translate([3, 0]).extrude_scaled(2, 0).evaluate()?;
+    /// assert!((oblique.volume() - 2.0 / 3.0 * std::f64::consts::PI).abs() < 1e-12);
     /// # Ok::<(), premio::Error>(())
     /// ```
     pub fn extrude_scaled(

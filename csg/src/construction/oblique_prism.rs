@@ -152,7 +152,7 @@ impl ObliquePrism<'_> {
     }
 }
 
-/// A prism of a figure that is scaled about z on the way up: one primitive, unless arcs beside the axis
+/// A prism of a figure that is scaled about z on the way up: one primitive, unless arcs off the axis
 /// lead to elliptic cones.
 ///
 /// # Errors

@@ -149,7 +149,7 @@ fn cylinders_between_two_planes_have_a_slot_as_hull() {
     assert_eq!(check(&b, hull, volume), surfaces);
 }
 
-/// A disc and a point beside it: a cone whose height is that of the point, with an apex that is not
+/// A disc and a point off its axis: a cone whose height is that of the point, with an apex that is not
 /// over the disc. A section at the height t is a disc of the radius 1 - t.
 #[test]
 fn a_disc_and_a_point_have_an_oblique_cone_as_hull() {
@@ -463,7 +463,7 @@ fn stretched_figures_have_elliptic_walls() {
     assert_eq!(check(&b, image, 6.0 * area), ["elliptic cylinder", "plane"]);
 }
 
-/// A rounded rectangle scaled about a point beside it: the volume is that of a pyramid without its
+/// A rounded rectangle scaled about a point outside: the volume is that of a pyramid without its
 /// upper part.
 #[test]
 fn scaled_figures_have_oblique_cones() {

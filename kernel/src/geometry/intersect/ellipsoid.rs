@@ -12,7 +12,7 @@
 use super::elliptic::circle_or_ellipse;
 use super::plane::plane_sphere;
 use super::quadric::over_first;
-use super::{IntersectionError, SurfaceIntersection, place};
+use super::{Branch, IntersectionError, RegionOfInterest, SurfaceIntersection, place};
 use crate::geometry::ellipsoid::Ellipsoid;
 use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use crate::geometry::frame::Frame;
@@ -69,13 +69,7 @@ pub(super) fn balls<N: Float>(
     if let Some(touches) = pencil.touches_in_symmetry(pair, predicates) {
         return Ok(touches);
     }
-    let mut meeting = SurfaceIntersection::nothing();
-    for ruled in pencil.ruled_members() {
-        let base = Carrier::constructed(&ruled);
-        let over = over_first(&SurfacePair::new(base, pair.a, pair.extent), predicates)?;
-        append(&mut meeting, over, predicates);
-    }
-    Ok(meeting)
+    pencil.over_rulings(pair, predicates)
 }
 
 /// Adds an intersection. A singular point that both have is one, with the branches of both.
@@ -116,6 +110,23 @@ struct Pencil<N: Float> {
     forms: [N; 3],
     /// d.
     centre: [N; 3],
+}
+
+/// Surfaces with rulings that carry the curve.
+struct RuledMembers<N: Float> {
+    /// The distance of the apex, in radii of the unit sphere. Heights along the rulings lose its square
+    /// in rounding.
+    away: N,
+    surfaces: Vec<Surface<N>>,
+}
+
+/// The multiple of rounding by which points over a cone may be off.
+const ROUNDINGS: f64 = 8.0;
+
+/// A parameter of a branch.
+fn sample<N: Float>(branch: &Branch<N>, i: i32) -> N {
+    let part = (N::whole(i) + N::from_f64(0.3)) / N::whole(SAMPLES);
+    branch.range[0] + (branch.range[1] - branch.range[0]) * part
 }
 
 /// A member of the pencil: λ by its distances q from the m_i, none of which cancels.
@@ -242,11 +253,90 @@ impl<N: Float> Pencil<N> {
         Some(meeting)
     }
 
+    /// The curve over the rulings of a member.
+    fn over_rulings(
+        &self,
+        pair: &SurfacePair<'_, N>,
+        predicates: &Predicates,
+    ) -> Result<SurfaceIntersection<N>, IntersectionError> {
+        let origin = self.first.frame.origin;
+        let at = place(&origin);
+        let undetermined = IntersectionError::Undetermined { place: at };
+        // The curve is on the first surface, all of which is in this extent.
+        let RegionOfInterest { centre, radius } = *pair.extent;
+        let whole = (origin - centre).length() + N::TWO * self.first.circumradius();
+        let extent = RegionOfInterest {
+            centre,
+            radius: radius.max(whole),
+        };
+        let RuledMembers { away, surfaces } = self.ruled_members();
+        let rounding = N::from_f64(ROUNDINGS) * N::EPSILON * self.first.circumradius();
+        if !predicates.within(rounding * away * away) {
+            return Err(undetermined);
+        }
+        let mut meeting = SurfaceIntersection::nothing();
+        for ruled in &surfaces {
+            let base = Carrier::constructed(ruled);
+            let over = over_first(&SurfacePair::new(base, pair.a, &extent), predicates)?;
+            append(&mut meeting, over, predicates);
+        }
+        let is_lost = meeting.branches.is_empty() && self.changes_side(pair, predicates);
+        let is_off = |branch: &Branch<N>| {
+            let samples = (0..SAMPLES).map(|i| branch.curve.point(sample(branch, i)));
+            let mut off = samples.map(|p| pair.b.surface.distance(&p));
+            off.any(|off| !predicates.within(off))
+        };
+        match is_lost || meeting.branches.iter().any(is_off) {
+            true => Err(undetermined),
+            false => Ok(meeting),
+        }
+    }
+
+    /// Whether the first surface has points clearly inside and clearly outside the second: those with the
+    /// least and the greatest value of B, where y_i = m_i d_i/(m_i - μ).
+    fn changes_side(&self, pair: &SurfacePair<'_, N>, predicates: &Predicates) -> bool {
+        let distance = |end: usize| {
+            let square = |excess: N| {
+                let y = self.extreme(end, excess);
+                y.iter().map(|y| *y * *y).sum::<N>() - N::ONE
+            };
+            // Far from the m the sum is less than one.
+            let size: N = (0..3).map(|i| self.forms[i] * self.centre[i].abs()).sum();
+            let excess = bisect(N::ZERO, N::TWO * size, N::ONE, square);
+            let mut y = self.extreme(end, excess);
+            if !y.iter().all(|y| y.is_finite()) {
+                y = [N::ZERO; 3];
+            }
+            // If the sum is less than one everywhere, the rest is along the axis of the end.
+            let rest = N::ONE - y.iter().map(|y| *y * *y).sum::<N>();
+            y[end] += rest.max(N::ZERO).sqrt();
+            pair.b.surface.distance(&self.point(y))
+        };
+        let [least, greatest] = [distance(0), distance(2)];
+        let is_clear = |off: N| !predicates.within(off);
+        is_clear(least) && is_clear(greatest) && (least < N::ZERO) != (greatest < N::ZERO)
+    }
+
+    /// The y of μ below m₁ (`end` 0) or above m₃ (2) by an excess.
+    fn extreme(&self, end: usize, excess: N) -> [N; 3] {
+        let side = if end == 0 { N::ONE } else { -N::ONE };
+        std::array::from_fn(|i| {
+            let apart = self.forms[i] - self.forms[end] + side * excess;
+            match self.centre[i] == N::ZERO {
+                true => N::ZERO,
+                false => self.forms[i] * self.centre[i] / apart,
+            }
+        })
+    }
+
     /// The ruled member whose vertex is the closest to the surfaces: a cylinder, or both nappes of a
     /// cone.
-    fn ruled_members(&self) -> Vec<Surface<N>> {
+    fn ruled_members(&self) -> RuledMembers<N> {
         if let Some((i, others)) = self.cylinder_axis() {
-            return self.cylinder(i, others).into_iter().collect();
+            return RuledMembers {
+                away: N::ONE,
+                surfaces: self.cylinder(i, others).into_iter().collect(),
+            };
         }
         let cones = [[0, 1], [1, 2]].into_iter().filter_map(|ends| {
             let member = self.cone_member(ends)?;
@@ -256,8 +346,14 @@ impl<N: Float> Pencil<N> {
         });
         let nearest = cones.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
         match nearest {
-            Some((_, member, apex)) => self.nappes(&member, apex).into(),
-            None => Vec::new(),
+            Some((away, member, apex)) => RuledMembers {
+                away,
+                surfaces: self.nappes(&member, apex).into(),
+            },
+            None => RuledMembers {
+                away: N::ONE,
+                surfaces: Vec::new(),
+            },
         }
     }
 
@@ -394,9 +490,7 @@ impl<N: Float> Pencil<N> {
         for branch in &mut meeting.branches {
             branch.tangent = pair_of_planes.is_double;
             for i in 0..SAMPLES {
-                let part = (N::whole(i) + N::from_f64(0.3)) / N::whole(SAMPLES);
-                let t = branch.range[0] + (branch.range[1] - branch.range[0]) * part;
-                let off = off(&branch.curve.point(t));
+                let off = off(&branch.curve.point(sample(branch, i)));
                 worst = Some(worst.map_or(off, |worst: N| worst.max(off)));
             }
         }
@@ -504,5 +598,5 @@ impl<N: Float> Pencil<N> {
     }
 }
 
-/// The number of points at which a conic is tested.
+/// The number of points at which a curve is tested.
 const SAMPLES: i32 = 24;

@@ -93,6 +93,12 @@ pub enum IntersectionError {
         /// The approximate location of the cusp.
         place: [f64; 3],
     },
+    /// Two quadrics intersect in a curve that the precision does not determine.
+    #[error("two quadrics intersect in a curve that the rounding does not determine near ({:.6}, {:.6}, {:.6})", place[0], place[1], place[2])]
+    Undetermined {
+        /// A point of one of them.
+        place: [f64; 3],
+    },
 }
 
 impl<N: Float> SurfaceIntersection<N> {

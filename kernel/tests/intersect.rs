@@ -490,3 +490,24 @@ fn ellipsoids_side_by_side_touch_in_a_point() {
         );
     }
 }
+
+/// A ring touches an ellipsoid of revolution along its equator: from outside; or from inside, and where
+/// the ellipsoid bends more than the tube (2²/5 < 1) it crosses the ring in two more parallels.
+#[test]
+fn a_ring_touches_an_ellipsoid_along_its_equator() {
+    for (radii, circle, tangents, all) in [
+        ([3.0, 3.0, 2.0], 3.0, 1, 1),
+        ([5.0, 5.0, 2.5], 5.0, 1, 1),
+        ([5.0, 5.0, 2.0], 5.0, 1, 3),
+    ] {
+        let meeting = on_a_ring(&ellipsoid([0.0; 3], radii));
+        let touched = meeting.branches.iter().filter(|b| b.tangent);
+        assert_eq!(touched.count(), tangents, "{radii:?}");
+        assert_eq!(meeting.branches.len(), all, "{radii:?}");
+        assert!(
+            circles(&meeting).contains(&[0.0, 0.0, 0.0, circle]),
+            "{:?}",
+            circles(&meeting)
+        );
+    }
+}

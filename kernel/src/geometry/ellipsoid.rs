@@ -263,7 +263,7 @@ mod tests {
             let mut nearest = f64::INFINITY;
             for i in 0..240 {
                 for j in 0..120 {
-                    let (u, v) = (f64::from(i) * 0.026_18, f64::from(j) * 0.026_18 - 1.570_8);
+                    let (u, v) = (f64::from(i) * 0.026_18, f64::from(j - 60) * 0.026_18);
                     nearest = nearest.min((surface.point(u, v) - p).norm());
                 }
             }

@@ -1,7 +1,8 @@
 //! The circles along which a torus and another surface are tangent.
 //!
 //! A meridian is one where a sphere lies in the tube, where a straight pipe or another bend
-//! continues the tube, or where a ring lies in or around it. A rim of the ring is the other case.
+//! continues the tube, or where a ring lies in or around it. The other case is a parallel: a rim of the
+//! ring, or where an ellipsoid of revolution touches it.
 //!
 //! Along each such circle the other surface, as a function of the torus's angles, has a double
 //! zero. It is divided out before the remaining factor is traced.
@@ -14,11 +15,11 @@ use crate::geometry::surface::{Surface, Torus};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::trigonometric::divide;
 use crate::geometry::vector::{Length, direction};
-use crate::number::float::Float;
+use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
 use crate::number::predicates::Predicates;
-use crate::number::roots::{Roots, isolate};
+use crate::number::roots::{RootKind, Roots, isolate};
 use nalgebra::{Point3, Vector3};
 
 /// A circle of a torus along which another surface is tangent to it.
@@ -26,7 +27,7 @@ use nalgebra::{Point3, Vector3};
 pub(super) enum Contact<N: Float> {
     /// A circle of the tube, at this θ.
     Meridian(N),
-    /// The outer or the inner equator, at this φ.
+    /// A parallel, at this φ: the outer or the inner equator, unless the other surface is an ellipsoid.
     Rim(N),
 }
 
@@ -35,7 +36,12 @@ impl<N: Float> Contact<N> {
     pub fn circle(&self, t: &Torus<N>) -> Circle<N> {
         match *self {
             Self::Meridian(theta) => meridian(t, theta),
-            Self::Rim(phi) => parallel(t, N::ZERO, t.major + t.minor * phi.cos()),
+            Self::Rim(phi) => {
+                let (sin, cos) = phi.sin_cos();
+                let is_equator = phi == N::ZERO || phi == N::PI;
+                let up = if is_equator { N::ZERO } else { t.minor * sin };
+                parallel(t, up, t.major + t.minor * cos)
+            }
         }
     }
 
@@ -79,15 +85,11 @@ impl<N: Float> Contact<N> {
                 }
             }
         };
-        let breaks: Vec<N> = (0..=8)
-            .map(|i| N::from_f64(0.1) + N::TAU * N::whole(i) / N::from_f64(8.0))
-            .collect();
-        let Roots::At { roots, .. } = isolate(&along, &breaks, form.bound() * N::ROUNDING) else {
+        let precision = form.bound() * N::ROUNDING;
+        let Roots::At { roots, .. } = isolate(&along, &breaks_of_turn(), precision) else {
             return Vec::new();
         };
-        let once = roots
-            .iter()
-            .filter(|r| r.t < N::from_f64(0.1) + N::TAU * (N::ONE - N::ROUNDING));
+        let once = roots.iter().filter(|r| is_once(r.t));
         let angles = |t: N| match *self {
             Self::Meridian(theta) => [theta, t],
             Self::Rim(phi) => [t, phi],
@@ -133,6 +135,9 @@ pub(super) fn contacts<N: Float>(
     predicates: &Predicates,
 ) -> Vec<Contact<N>> {
     let mut all = Vec::new();
+    if let Surface::Ellipsoid(_) = pair.b.surface {
+        return tangent_parallels(t, pair.b.surface, predicates);
+    }
     all.extend(equal_tubes(t, pair, predicates).map(Contact::Meridian));
     if let Surface::Torus(o) = pair.b.surface {
         if ring_on_tube(pair, predicates).is_some() {
@@ -144,6 +149,62 @@ pub(super) fn contacts<N: Float>(
         }
     }
     all
+}
+
+/// The parallels of a torus along which an ellipsoid is tangent to it: those of the double zeros along
+/// one circle of the tube at which it is tangent all around.
+fn tangent_parallels<N: Float>(
+    t: &Torus<N>,
+    ellipsoid: &Surface<N>,
+    predicates: &Predicates,
+) -> Vec<Contact<N>> {
+    let along = |x: Interval<N>| {
+        let (sin, cos) = Jet::variable(x).sin_cos();
+        let out = Jet::constant(t.major) + cos.scale(t.minor);
+        let up = sin.scale(t.minor);
+        ellipsoid.level(t.frame.world_of([out, Jet::constant(N::ZERO), up]))
+    };
+    let Roots::At { roots, .. } = isolate(&along, &breaks_of_turn(), predicates.resolution())
+    else {
+        return Vec::new();
+    };
+    let torus = Surface::Torus(*t);
+    let is_tangent = |phi: N| {
+        (0..PLACES).all(|k| {
+            let p = torus.point(N::TAU * N::whole(k) / N::whole(PLACES), phi);
+            let tilt = torus.normal(&p).cross(&ellipsoid.normal(&p)).length();
+            predicates.within(ellipsoid.distance(&p)) && predicates.within(tilt * t.minor)
+        })
+    };
+    // A parallel within the resolution of a rim is the rim.
+    let exact = |phi: N| {
+        let half_turns = (phi / N::PI).round();
+        let rim = if half_turns == N::ONE { N::PI } else { N::ZERO };
+        let off = t.minor * (phi - half_turns * N::PI);
+        if predicates.within(off) { rim } else { phi }
+    };
+    let double = roots.iter().filter(|r| r.contact != RootKind::Simple);
+    let angles = double.map(|r| r.t).filter(|t| is_once(*t)).map(exact);
+    angles
+        .filter(|phi| is_tangent(*phi))
+        .map(Contact::Rim)
+        .collect()
+}
+
+/// The number of points of a parallel at which tangency is tested.
+const PLACES: i32 = 12;
+
+/// The ends of the pieces in which a whole turn is searched for zeros. Nothing is special at the first.
+fn breaks_of_turn<N: Float>() -> Vec<N> {
+    let eighth = N::TAU / N::from_f64(8.0);
+    (0..=8)
+        .map(|i| N::from_f64(0.1) + eighth * N::whole(i))
+        .collect()
+}
+
+/// Whether a zero is not the first one again, after a whole turn.
+fn is_once<N: Float>(zero: N) -> bool {
+    zero < N::from_f64(0.1) + N::TAU * (N::ONE - N::ROUNDING)
 }
 
 /// Whether a torus, the second of the pair, is tangent to the tube of the first along its entire

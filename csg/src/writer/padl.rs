@@ -164,7 +164,7 @@ fn call(primitive: &Primitive) -> String {
             format!("OBL({}, {}, {third})", tuple(x), tuple(y))
         }
         Primitive::Ellipsoid { radii } => {
-            let [x, y, z] = radii.vectors().each_ref().map(|radius| tuple(radius));
+            let [x, y, z] = radii.vectors().each_ref().map(tuple);
             format!("ELL({x}, {y}, {z})")
         }
     }

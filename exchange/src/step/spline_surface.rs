@@ -66,7 +66,10 @@ impl Shape<'_, '_> {
                 _ => (sin + next_sin, cos + next_cos),
             }
         };
-        let weight = |k: usize| if k % 2 == 0 { 1.0 } else { FRAC_1_SQRT_2 };
+        let weight = |k: usize| match k.is_multiple_of(2) {
+            true => 1.0,
+            false => FRAC_1_SQRT_2,
+        };
         let (mut rows, mut weights) = (Vec::new(), Vec::new());
         for k in 0..CONTROLS {
             let (sin, cos) = corner(start, k);

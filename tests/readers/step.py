@@ -4,6 +4,7 @@ many solids, and of as many faces after its own merging.
 A known failure is listed with its reason.
 """
 
+import math
 import subprocess
 import sys
 import tempfile
@@ -35,6 +36,7 @@ KNOWN = {
     "cone-around-a-ball-with-a-lip-of-1e-9": "refused: two edges of a face 1e-9 apart",
     "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
     "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",
+    "ellipsoids-nearly-similar": "refused: f64 does not determine a curve over a distant apex",
     "pipe-along-a-tube-off-by-1e-8": "refused: no seam passes between edges 1e-8 apart",
     "pipe-bend-along-a-floor": "refused: a wall without thickness along an arc",
 }
@@ -66,11 +68,15 @@ def shape_in(path):
 
 
 def volumes(shape):
-    """The volume by both of the reader's quadratures, each of which is inexact on some surfaces."""
-    adaptive, fixed = GProp_GProps(), GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, adaptive, 1e-6)
+    """The volume by the reader's quadratures, each of which is inexact on some surfaces: adaptive ones
+    of two accuracies, and a fixed one."""
+    for accuracy in (1e-6, 1e-8):
+        adaptive = GProp_GProps()
+        BRepGProp.VolumeProperties_s(shape, adaptive, accuracy)
+        yield adaptive.Mass()
+    fixed = GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, fixed)
-    return adaptive.Mass(), fixed.Mass()
+    yield fixed.Mass()
 
 
 def faults(premio, description, folder):
@@ -89,7 +95,12 @@ def faults(premio, description, folder):
     found = []
     if not BRepCheck_Analyzer(shape).IsValid():
         found.append("not valid")
-    off = min(abs(volume / known["volume"] - 1) for volume in volumes(shape))
+    # The slower quadratures are for volumes that the first one misses.
+    off = math.inf
+    for volume in volumes(shape):
+        off = min(off, abs(volume / known["volume"] - 1))
+        if off <= VOLUME:
+            break
     if off > VOLUME:
         found.append(f"a volume off by {off:.2g}")
     sides = [("solids", count(shape, TopAbs_SOLID), known["solids"])]

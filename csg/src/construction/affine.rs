@@ -19,7 +19,8 @@ use crate::tree::{PlacedPrimitive, TreeNode};
 /// The image of a solid under an affine map.
 ///
 /// Plane faces stay plane, cylinders and cones become elliptic ones, and spheres ellipsoids. Tori and
-/// other revolutions may be scaled equally in all directions.
+/// other revolutions may be scaled equally in all directions, and revolutions of polygons differently
+/// along their axis.
 ///
 /// # Errors
 /// The map makes another surface of a revolution, or makes a solid flat.
@@ -210,6 +211,17 @@ impl Stretch {
                 height: height * t,
                 top: top.clone(),
             },
+            Primitive::Revolution { figure, angle } => {
+                let zero = || Rational::ZERO;
+                let map = PlaneMap {
+                    matrix: [[s.clone(), zero()], [zero(), t.clone()]],
+                    offset: [zero(), zero()],
+                };
+                Primitive::Revolution {
+                    figure: Arc::new(figure.mapped(&map).ok()?),
+                    angle: angle.clone(),
+                }
+            }
             _ => return None,
         })
     }

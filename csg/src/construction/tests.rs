@@ -259,6 +259,13 @@ fn plane_faces_take_any_scale() {
     let scale = AffineMap::scale(&[2, 1, 3].map(n));
     let egg = mapped(&mut b, unit, &scale).unwrap();
     assert_eq!(check(&b, egg, 8.0 * PI), ["ellipsoid"]);
+    // A ring of triangles about the axis: 2 pi times the distance 2 of the centroid times the area 2.
+    let figure = Figure::polygon(&[vec![[n(1), n(0)], [n(3), n(0)], [n(2), n(2)]]]).unwrap();
+    let ring = b.primitive(Primitive::revolution(figure, None).unwrap());
+    let high = mapped(&mut b, ring, &AffineMap::scale(&[2, 2, 5].map(n))).unwrap();
+    assert_eq!(check(&b, high, 160.0 * PI), ["cone", "plane"]);
+    let oval = mapped(&mut b, ring, &AffineMap::scale(&[2, 3, 5].map(n)));
+    assert_eq!(oval, Err(ConstructionError::Elliptic));
     let back = AffineMap::scale(&[3, 6, 2].map(n));
     let round = mapped(&mut b, egg, &back).unwrap();
     assert_eq!(check(&b, round, 288.0 * PI), ["sphere"]);

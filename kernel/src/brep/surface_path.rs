@@ -8,6 +8,7 @@
 //! along the path, D its direction, N the outward normal of the face, T the direction of an arc.
 //! The face lies to the left, towards N × T, so the path enters the face where D·(N × T) > 0.
 
+mod central;
 mod reach;
 mod track;
 
@@ -18,10 +19,7 @@ use crate::geometry::curve::{Circle, Curve, Line};
 use crate::geometry::curve_plane::{
     SectionPlane, line_intersections, section_roots, surface_roots,
 };
-use crate::geometry::ellipsoid::Ellipsoid;
-use crate::geometry::elliptic_surface::{
-    EllipticCone, EllipticCylinder, eccentric_angle, perpendicular_axes,
-};
+use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
 use crate::geometry::torus_parameter::TorusParameter;
@@ -142,33 +140,6 @@ impl<N: Float> SurfacePath<N> {
         }
     }
 
-    /// The section of a sphere or an ellipsoid through its centre, from a point of it towards `target`,
-    /// once round; `None` if the two are in one line with the centre, and for other surfaces.
-    pub fn central(surface: &Surface<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
-        match surface {
-            Surface::Sphere(s) => Self::great_circle(&s.frame.origin, start, target),
-            Surface::Ellipsoid(s) => Self::central_ellipse(s, start, target),
-            _ => None,
-        }
-    }
-
-    /// The image of the great circle through the points of the unit sphere.
-    fn central_ellipse(s: &Ellipsoid<N>, start: &Point3<N>, target: &Point3<N>) -> Option<Self> {
-        let on_sphere = |p: &Point3<N>| s.on_unit_sphere(&s.frame.coordinates(p));
-        let (arm, goal) = (on_sphere(start), on_sphere(target));
-        let normal = arm.cross(&goal);
-        let size = normal.length();
-        if !size.is_beyond(arm.length() * goal.length() * N::ROUNDING.sqrt()) {
-            return None;
-        }
-        let ahead = normal.cross(&arm) / size;
-        let [from, ahead] = [arm, ahead].map(|axis| s.frame.vector(&s.image(&axis)));
-        let [long, short] = perpendicular_axes(from, ahead);
-        let frame = Frame::toward(s.frame.origin, from.cross(&ahead).unit(), long);
-        let radii = [long.length(), short.length()];
-        Some(Self::ellipse(start, frame, radii, Sense::Along))
-    }
-
     /// An endless straight line in a plane, along the unit vector `direction`.
     pub(crate) fn straight(plane: &Plane<N>, start: &Point3<N>, direction: Vector3<N>) -> Self {
         let normal = direction.cross(&plane.frame.z).unit();
@@ -233,23 +204,6 @@ impl<N: Float> SurfacePath<N> {
             return is_off_axis.then(|| Self::ellipse(start, f.at(centre), radii, sense));
         }
         is_off_axis.then(|| Self::circle(start, centre, f.z * sense.sign::<N>(), branch))
-    }
-
-    /// The points of an ellipsoid with one latitude.
-    fn parallel_of(
-        s: &Ellipsoid<N>,
-        start: &Point3<N>,
-        sense: Sense,
-        resolution: N,
-    ) -> Option<Self> {
-        let height = s.on_axes(&s.frame.coordinates(start)).z;
-        let section = s.section(&s.axes[2], height);
-        let [long, short] = section.radii;
-        let [x, y, _] = s.conjugate_radii();
-        let frame = Frame::toward(section.centre, x.cross(&y).unit(), long);
-        let radii = [long.length(), short.length()];
-        let is_off_axis = radii[1].is_beyond(resolution.max(N::ROUNDING * s.circumradius()));
-        is_off_axis.then(|| Self::ellipse(start, frame, radii, sense))
     }
 
     /// The ellipse through `start` about the centre of a frame, once round.

@@ -215,19 +215,10 @@ impl<N: Float> Ellipsoid<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::elliptic_surface::tests::{axes, vector};
     use crate::geometry::surface::Surface;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
-
-    fn vector() -> impl Strategy<Value = Vector3<f64>> {
-        prop::array::uniform3(-2.0..2.0).prop_map(Vector3::from)
-    }
-
-    /// Conjugate axes that are not nearly in one plane.
-    fn axes() -> impl Strategy<Value = [Vector3<f64>; 3]> {
-        let all = [vector(), vector(), vector()];
-        all.prop_filter("flat", |[x, y, z]| x.cross(y).dot(z).abs() > 0.2)
-    }
 
     proptest! {
         #[test]

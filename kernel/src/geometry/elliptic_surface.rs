@@ -284,18 +284,18 @@ fn from_tangent_planes<N: Float>([x, y]: [N; 2], [a, b]: [N; 2], level: N, rise:
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::geometry::surface::Surface;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
-    fn vector() -> impl Strategy<Value = Vector3<f64>> {
+    pub(crate) fn vector() -> impl Strategy<Value = Vector3<f64>> {
         prop::array::uniform3(-2.0..2.0).prop_map(Vector3::from)
     }
 
     /// Conjugate axes that are not nearly in one plane.
-    fn axes() -> impl Strategy<Value = [Vector3<f64>; 3]> {
+    pub(crate) fn axes() -> impl Strategy<Value = [Vector3<f64>; 3]> {
         let all = [vector(), vector(), vector()];
         all.prop_filter("flat", |[x, y, z]| x.cross(y).dot(z).abs() > 0.2)
     }

@@ -1,7 +1,7 @@
 //! Random trees with ellipsoids on a half-unit grid.
 
 use super::{grid, oblique};
-use crate::generator::model::{ModelNodeId, ModelOperation, ModelPrimitive, PartModel};
+use crate::generator::model::{ModelNodeId, ModelPrimitive, PartModel};
 use crate::generator::random::RandomChoices;
 
 /// The random stream of this profile.
@@ -10,17 +10,9 @@ const PURPOSE: u64 = 10;
 /// 2 to 5 primitives placed as those of `grid`: the first one an ellipsoid, of the others about half
 /// ellipsoids, and some oblique frustums.
 pub(super) fn model(seed: u64) -> PartModel {
-    use ModelOperation::{Difference, Intersection, Union};
     let random = &mut RandomChoices::apart(seed, PURPOSE);
-    let mut model = PartModel::default();
     let first = ellipsoid(random);
-    let mut whole = model.leaf(first, Vec::new());
-    for _ in 0..random.between(1, 4) {
-        let other = other(random, &mut model);
-        let op = random.choose(&[Difference, Difference, Union, Intersection]);
-        whole = model.operation(op, vec![whole, other], Vec::new());
-    }
-    model
+    oblique::chain(random, first, other)
 }
 
 fn other(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {

@@ -10,10 +10,19 @@ const PURPOSE: u64 = 9;
 /// 2 to 5 primitives placed as those of `grid`, the first one and about half of the others oblique
 /// frustums.
 pub(super) fn model(seed: u64) -> PartModel {
-    use ModelOperation::{Difference, Intersection, Union};
     let random = &mut RandomChoices::apart(seed, PURPOSE);
-    let mut model = PartModel::default();
     let first = oblique_frustum(random);
+    chain(random, first, other)
+}
+
+/// A primitive with one to four operations.
+pub(super) fn chain(
+    random: &mut RandomChoices,
+    first: ModelPrimitive,
+    other: fn(&mut RandomChoices, &mut PartModel) -> ModelNodeId,
+) -> PartModel {
+    use ModelOperation::{Difference, Intersection, Union};
+    let mut model = PartModel::default();
     let mut whole = model.leaf(first, Vec::new());
     for _ in 0..random.between(1, 4) {
         let other = other(random, &mut model);

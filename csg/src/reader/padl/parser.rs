@@ -459,11 +459,17 @@ impl<'a, 's, 'm> Parser<'a, 's, 'm> {
             .rev()
             .find_map(|frame| frame.bracket.open());
         match open {
-            Some(open) if lexeme.token == Token::End => {
-                let line = self.session.sources.line(open.span().start);
-                fault.help(format!("the bracket opened on {line} is not closed"))
+            Some(open) => {
+                let [opened, here] =
+                    [open, lexeme].map(|l| self.session.sources.line(l.span().start));
+                // On a later line, `NAME =` begins the next statement.
+                let is_statement = here != opened && self.cursor.peek().is('=');
+                match lexeme.token == Token::End || is_statement {
+                    true => fault.help(format!("the bracket opened on {opened} is not closed")),
+                    false => fault,
+                }
             }
-            _ => fault,
+            None => fault,
         }
     }
 }

@@ -46,6 +46,7 @@ fn expressions() {
     assert_snapshot!(padl("A = SPH(R=1)\nB = A + 1"), @"part:2:5: found a solid, expected a number before `+`");
     assert_snapshot!(padl("A = SPH(R=1) UN 2"), @"part:1:17: found the number 2, expected a solid after `UN`");
     assert_snapshot!(padl("P = SPH(R=(1 + 2)"), @"part:1:18: found the end of the file, expected an operator or a closing `)` (the bracket opened on line 1 is not closed)");
+    assert_snapshot!(padl("P = (SPH(R=1)\nQ = SPH(R=2)\n"), @"part:2:1: found `Q`, expected an operator or the end of the value (the bracket opened on line 1 is not closed)");
     assert_snapshot!(padl("P = (SPH(R=1)\n"), @"part:2:1: found the end of the file, expected an operator or a closing `)` (the bracket opened on line 1 is not closed)");
     assert_snapshot!(padl("P = 2 AT (MOVX=1)"), @"part:1:5: found the number 2, expected a solid before `AT`");
     assert_snapshot!(padl("P = SPH(R=1) SPH(R=2)"), @"part:1:14: found `SPH`, expected an operator or the end of the value");

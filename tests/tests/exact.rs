@@ -32,6 +32,10 @@ const MEANT: &[(&str, &str)] = &[
         "ring-under-a-block-turned-within-the-resolution",
         "a turn within the resolution, by which the ring stands a little into the block",
     ),
+    (
+        "ellipsoid-nearly-coaxial-with-a-sphere",
+        "the ellipsoid's pole stands 2e-15 out of the sphere",
+    ),
     ("roof-ridges-crossing", "a ridge's height in decimals"),
     ("steinmetz-with-noise", "noise"),
     ("three-equal-cylinders-with-noise", "noise"),

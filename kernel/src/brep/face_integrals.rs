@@ -13,6 +13,7 @@ mod ground;
 mod outline;
 mod pole_turns;
 mod strip;
+mod waves;
 
 use super::Brep;
 use super::topology::{FaceId, ShellId};

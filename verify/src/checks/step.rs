@@ -5,6 +5,7 @@
 
 mod curve;
 pub(crate) mod foreign;
+mod net_ellipse;
 mod oval;
 mod part21;
 mod ruled;

@@ -6,7 +6,7 @@
 //! = p cos² x + q sin² x for x = v - ψ, and cos v = cos ψ cos x - sin ψ sin x.
 
 use super::Moments;
-use super::strip::round;
+use super::waves::round;
 use crate::geometry::ellipsoid::Ellipsoid;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;

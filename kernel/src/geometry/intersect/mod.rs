@@ -199,6 +199,9 @@ pub fn intersect<N: Float>(
         (S::Plane(p), S::Ellipsoid(s)) => ellipsoid::plane_ellipsoid(p, s, &pair, predicates),
         (S::Ellipsoid(s), S::Plane(p)) => ellipsoid::plane_ellipsoid(p, s, &turned, predicates),
         (S::Sphere(s), S::Sphere(t)) => sphere::sphere_sphere(s, t, &pair, predicates),
+        (S::Sphere(_) | S::Ellipsoid(_), S::Sphere(_) | S::Ellipsoid(_)) => {
+            ellipsoid::balls(&pair, predicates)?
+        }
         (S::Torus(t), S::Torus(o)) => torus::torus_torus(t, o, &pair, predicates)?,
         (S::Torus(t), _) => torus::torus_with(t, &pair, predicates)?,
         (_, S::Torus(t)) => torus::torus_with(t, &turned, predicates)?,

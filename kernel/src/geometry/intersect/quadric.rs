@@ -2,7 +2,7 @@
 //! carry the curve, and the cases that need no rulings.
 
 use super::rulings::Rulings;
-use super::{IntersectionError, SurfaceIntersection, ellipsoid, elliptic, place};
+use super::{IntersectionError, SurfaceIntersection, elliptic, place};
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::elliptic_surface::EllipticCone;
 use crate::geometry::frame::Frame;
@@ -38,7 +38,7 @@ pub(super) fn quadric_quadric<N: Float>(
         (_, Some(other)) if !other.is_cone() => over_rulings(&turned, predicates),
         (Some(_), _) => over_rulings(pair, predicates),
         (_, Some(_)) => over_rulings(&turned, predicates),
-        (None, None) => ellipsoid::balls(pair, predicates),
+        (None, None) => Ok(SurfaceIntersection::nothing()),
     }
 }
 

@@ -4,7 +4,7 @@
 //! D its determinant. Then S_φ × S_v = D cos v A⁻ᵀ n, and S·(S_φ × S_v) = D cos v (1 + o'·n) with
 //! o' = A⁻¹ o. P starts at the south pole.
 
-use super::spline_net::{AROUND, NetEllipse, SAME, angle_of_arcs};
+use super::net_ellipse::{AROUND, NetEllipse, SAME, angle_of_arcs};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 

@@ -4,7 +4,7 @@
 //! derivative, D = x·(y × z). Then S·(S_u × S_v) = ρ φ_u (k + a D) with
 //! k = o·(e' × z) - g o·(x × y), and the integral of ρ by v is R = a v, or ρ²/2g.
 
-use super::spline_net::{AROUND, NetEllipse, SAME, angle_of_arcs};
+use super::net_ellipse::{AROUND, NetEllipse, SAME, angle_of_arcs};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// A surface with straight lines between similar ellipses in parallel planes.

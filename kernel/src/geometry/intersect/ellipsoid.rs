@@ -115,8 +115,8 @@ struct Pencil<N: Float> {
 
 /// Surfaces with rulings that carry the curve.
 struct RuledMembers<N: Float> {
-    /// The distance of the apex, in radii of the unit sphere. Heights along the rulings lose its square
-    /// in rounding.
+    /// The distance of the apex or the axis, in radii of the unit sphere. Points over the rulings lose its
+    /// square in rounding.
     away: N,
     surfaces: Vec<Surface<N>>,
 }
@@ -334,8 +334,9 @@ impl<N: Float> Pencil<N> {
     /// cone.
     fn ruled_members(&self) -> RuledMembers<N> {
         if let Some((i, others)) = self.cylinder_axis() {
+            let (_, y) = self.cylinder_centre(i, others);
             return RuledMembers {
-                away: N::ONE,
+                away: Vector3::from(y).length().max(N::ONE),
                 surfaces: self.cylinder(i, others).into_iter().collect(),
             };
         }

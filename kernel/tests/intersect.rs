@@ -491,6 +491,24 @@ fn ellipsoids_side_by_side_touch_in_a_point() {
     }
 }
 
+/// An ellipsoid of revolution, and one that is wider by 1e-7 and off its axis by more than that: both
+/// have nearly common poles, and cross elsewhere.
+#[test]
+fn nearly_equal_ellipsoids_off_their_axis_cross() {
+    let wide = 2.0 + 1e-7;
+    let other = ellipsoid([1e-7, -1e-7, 0.0], [wide, wide, 3.0]);
+    let own = ellipsoid([0.0; 3], [2.0, 2.0, 3.0]);
+    let meeting = met(&own, &other);
+    assert!(!meeting.branches.is_empty());
+    let off = |p: &Point3<f64>| own.distance(p).abs().max(other.distance(p).abs());
+    for branch in &meeting.branches {
+        for k in 0..40 {
+            let t = branch.range[0] + (branch.range[1] - branch.range[0]) * f64::from(k) / 40.0;
+            assert!(off(&branch.curve.point(t)) < 1e-13);
+        }
+    }
+}
+
 /// A ring touches an ellipsoid of revolution along its equator: from outside; or from inside, and where
 /// the ellipsoid bends more than the tube (2²/5 < 1) it crosses the ring in two more parallels.
 #[test]

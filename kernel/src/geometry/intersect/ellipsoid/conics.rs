@@ -17,7 +17,8 @@ struct PlanePair<N: Float> {
     planes: Vec<Plane<N>>,
     /// Whether both are one plane, so that the surfaces are tangent along its conic.
     is_double: bool,
-    /// Whether a plane may touch the first surface, so that the point is all of its conic.
+    /// Whether the ellipsoids are coaxial, so that a plane may touch the first one and the point is all
+    /// of its conic.
     may_touch: bool,
     /// The points in which the conics cross.
     crossings: Vec<Point3<N>>,
@@ -159,7 +160,7 @@ impl<N: Float> Pencil<N> {
         let none = || PlanePair {
             planes: Vec::new(),
             is_double: false,
-            may_touch: self.is_double(j, k),
+            may_touch: self.is_double(j, k) && [j, k].iter().all(|&i| self.centre[i] == N::ZERO),
             crossings: Vec::new(),
         };
         let both = PlanePair {

@@ -112,9 +112,9 @@ pub enum ProfileChoice {
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
         use Profile::{
-            Deep, Ellipsoid, Figures, Grid, Near, Oblique, Parts, Rounded, Tangent, Wide,
+            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, Oblique, Parts, Rounded, Tangent, Wide,
         };
-        const CHOICES: [ProfileChoice; 11] = [
+        const CHOICES: [ProfileChoice; 12] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -126,6 +126,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Figures),
             ProfileChoice::One(Oblique),
             ProfileChoice::One(Ellipsoid),
+            ProfileChoice::One(NearEllipsoid),
         ];
         &CHOICES
     }

@@ -149,13 +149,18 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>
 
 /// The pieces of a curve in extended precision. The boxes are those of the curve rounded to f64,
 /// enlarged by more than rounding moves the curve; next to a node that is the square root of the
-/// rounding.
+/// rounding. A curve that rounding moves further is sampled instead.
 fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>> {
-    let mut rounded = pieces(&curve.to_f64(), [lo, hi].map(N::rounded));
+    let rounded_curve = curve.to_f64();
+    let range = [lo, hi].map(N::rounded);
+    let mut rounded = pieces(&rounded_curve, range);
     let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
     let far = whole.min.iter().chain(&whole.max);
     let far = far.fold(0.0_f64, |far, x| far.max(x.abs()));
     let growth = f64::ROUNDING.sqrt() * (whole.diagonal() + far);
+    if !keeps_points(curve, &rounded_curve, range, 0.5 * growth) {
+        return sampled_pieces(curve, [lo, hi]);
+    }
     let last = rounded.len().saturating_sub(1);
     let all = rounded.drain(..).enumerate();
     all.map(|(i, piece)| {
@@ -168,6 +173,46 @@ fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiec
         }
     })
     .collect()
+}
+
+/// Whether a rounded curve has every sampled point of the curve to a distance.
+fn keeps_points<N: Float>(
+    curve: &Curve<N>,
+    rounded: &Curve,
+    [lo, hi]: [f64; 2],
+    distance: f64,
+) -> bool {
+    let samples = (0..=SAMPLES).map(|k| lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES));
+    let mut off = samples.map(|t| {
+        let point = curve.point(N::from_f64(t)).map(N::rounded);
+        (point - rounded.point(t)).norm()
+    });
+    off.all(|off| off <= distance)
+}
+
+/// The pieces of a curve whose boxes are those of the extrema between samples, enlarged by a fraction of
+/// the curve's size.
+fn sampled_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>> {
+    let breaks = curve.breaks(lo, hi);
+    let smooth = breaks.windows(2).flat_map(|pair| {
+        let step = (pair[1] - pair[0]) / N::whole(SAMPLES);
+        let end = move |k: u32| match k {
+            SAMPLES => pair[1],
+            _ => pair[0] + step * N::whole(k),
+        };
+        (0..SAMPLES).map(move |k| [end(k), end(k + 1)])
+    });
+    let mut all: Vec<CurvePiece<N>> = smooth
+        .map(|range| CurvePiece {
+            range,
+            bounds: extremes(curve, range),
+        })
+        .collect();
+    let whole = all.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
+    for piece in &mut all {
+        piece.bounds = piece.bounds.grown(LOOSE * whole.diagonal());
+    }
+    all
 }
 
 /// Whether the box of every arc has a closed form.

@@ -121,7 +121,7 @@ struct RuledMembers<N: Float> {
     surfaces: Vec<Surface<N>>,
 }
 
-/// The multiple of rounding by which points over a cone may be off.
+/// The multiple of rounding by which points may be off.
 const ROUNDINGS: f64 = 8.0;
 
 /// A parameter of a branch.
@@ -282,15 +282,25 @@ impl<N: Float> Pencil<N> {
             append(&mut meeting, over, predicates);
         }
         let is_lost = meeting.branches.is_empty() && self.changes_side(pair, predicates);
-        let is_off = |branch: &Branch<N>| {
+        let is_vague = |branch: &Branch<N>| {
             let samples = (0..SAMPLES).map(|i| branch.curve.point(sample(branch, i)));
-            let mut off = samples.map(|p| pair.b.surface.distance(&p));
+            let mut off = samples.map(|p| self.distance_to_curve(pair, &p));
             off.any(|off| !predicates.within(off))
         };
-        match is_lost || meeting.branches.iter().any(is_off) {
+        match is_lost || meeting.branches.iter().any(is_vague) {
             true => Err(undetermined),
             false => Ok(meeting),
         }
+    }
+
+    /// How far a point of the first surface may be from the curve in which the second one crosses it: at a
+    /// small angle a small distance from the second one, or rounding, moves the curve far along both.
+    fn distance_to_curve(&self, pair: &SurfacePair<'_, N>, p: &Point3<N>) -> N {
+        let [first, second] = [pair.a.surface, pair.b.surface];
+        let sine = first.normal(p).cross(&second.normal(p)).length();
+        let size = p.coords.length() + self.first.circumradius();
+        let rounding = N::from_f64(ROUNDINGS) * N::EPSILON * size;
+        second.distance(p).abs().max(rounding) / sine
     }
 
     /// Whether the first surface has points clearly inside and clearly outside the second: those with the

@@ -29,7 +29,7 @@ fn other(random: &mut RandomChoices, model: &mut PartModel) -> ModelNodeId {
 }
 
 /// An ellipsoid along the axes, in one of three with two equal radii, and in one of three sheared.
-fn ellipsoid(random: &mut RandomChoices) -> ModelPrimitive {
+pub(super) fn ellipsoid(random: &mut RandomChoices) -> ModelPrimitive {
     let (a, b, c) = (random.half(2, 8), random.half(2, 8), random.half(2, 8));
     let b = if random.once_in(3) { a } else { b };
     let c = if a == b && b == c { c + 0.5 } else { c };

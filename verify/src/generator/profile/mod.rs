@@ -5,6 +5,7 @@ mod ellipsoid;
 mod figures;
 mod grid;
 mod near;
+mod near_ellipsoid;
 mod oblique;
 mod parts;
 pub mod rounded;
@@ -41,11 +42,14 @@ pub enum Profile {
     Oblique,
     /// 2 to 5 primitives, of which half are ellipsoids.
     Ellipsoid,
+    /// Nearly equal ellipsoids, or a tree of `ellipsoid` with primitives moved, turned or grown a little.
+    #[serde(rename = "near-ellipsoid")]
+    NearEllipsoid,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -56,6 +60,7 @@ impl Profile {
         Self::Figures,
         Self::Oblique,
         Self::Ellipsoid,
+        Self::NearEllipsoid,
     ];
 
     /// The name, as it is written on the command line.
@@ -71,6 +76,7 @@ impl Profile {
             Self::Figures => "figures",
             Self::Oblique => "oblique",
             Self::Ellipsoid => "ellipsoid",
+            Self::NearEllipsoid => "near-ellipsoid",
         }
     }
 
@@ -98,6 +104,9 @@ impl Profile {
             Self::Ellipsoid => {
                 "2 to 5 primitives, of which half are ellipsoids; some are oblique frustums"
             }
+            Self::NearEllipsoid => {
+                "Nearly equal ellipsoids, or a tree of `ellipsoid` with primitives moved, turned or grown a little"
+            }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
                 "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
@@ -121,6 +130,7 @@ impl Profile {
             Self::Figures => figures::model(seed),
             Self::Oblique => oblique::model(seed),
             Self::Ellipsoid => ellipsoid::model(seed),
+            Self::NearEllipsoid => near_ellipsoid::model(seed),
         }
     }
 }
@@ -164,7 +174,7 @@ mod tests {
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,
                     Profile::Figures => 3,
-                    Profile::Oblique | Profile::Ellipsoid => 5,
+                    Profile::Oblique | Profile::Ellipsoid | Profile::NearEllipsoid => 5,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }

@@ -24,7 +24,8 @@ pub(super) fn model(seed: u64) -> PartModel {
     model
 }
 
-fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId) {
+/// Moves, rotates or enlarges a primitive slightly.
+pub(super) fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId) {
     let Some(node) = model.node_mut(leaf) else {
         return;
     };
@@ -48,7 +49,7 @@ fn disturb(random: &mut RandomChoices, model: &mut PartModel, leaf: ModelNodeId)
 }
 
 /// A small number of any order of magnitude.
-fn little(random: &mut RandomChoices) -> f64 {
+pub(super) fn little(random: &mut RandomChoices) -> f64 {
     match random.once_in(3) {
         true => 10f64.powi(-(random.between(4, 9) as i32)),
         false => 2f64.powi(-(random.between(10, 60) as i32)),

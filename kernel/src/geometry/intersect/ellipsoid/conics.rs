@@ -13,7 +13,6 @@ use nalgebra::{Point3, Vector3};
 
 /// Planes of a degenerate member.
 struct PlanePair<N: Float> {
-    /// By a point and conjugate directions.
     planes: Vec<Plane<N>>,
     /// Whether both are one plane, so that the surfaces are tangent along its conic.
     is_double: bool,
@@ -73,7 +72,11 @@ impl<N: Float> Pencil<N> {
         for branch in &mut meeting.branches {
             branch.tangent = pair_of_planes.is_double;
             for i in 0..SAMPLES {
-                let off = off(&branch.curve.point(sample(branch, i)));
+                let p = branch.curve.point(sample(branch, i));
+                let off = match branch.tangent {
+                    true => off(&p),
+                    false => self.distance_to_curve(pair, &p),
+                };
                 worst = Some(worst.map_or(off, |worst: N| worst.max(off)));
             }
         }

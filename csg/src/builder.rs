@@ -4,15 +4,17 @@
 //! the leaves, and parts used several times are copied. Nothing here recurses.
 
 mod expansion;
+mod unbounded;
 
 use expansion::Expansion;
+use std::fmt;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, bits};
 
-use crate::primitive::Primitive;
+use crate::primitive::{Primitive, UnboundedPrimitive};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
 
@@ -43,6 +45,42 @@ pub enum TreeError {
     /// The solid was created by another builder.
     #[error("a solid of another builder was used")]
     ForeignSolid,
+    /// The part has no bound, or one that is more than a million times further than its components
+    /// reach.
+    #[error("a part without a bound {0}")]
+    Unbounded(UnboundedSide),
+    /// A solid without a bound has numbers that f64 does not hold.
+    #[error("a half-space with numbers beyond the range of f64")]
+    OutOfRange,
+}
+
+/// Where a part has no bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnboundedSide {
+    /// It contains everything beyond some distance.
+    Everywhere,
+    /// Toward a direction, whose components are in hundredths.
+    Toward([i16; 3]),
+}
+
+impl fmt::Display for UnboundedSide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let direction = match self {
+            Self::Everywhere => return f.write_str("on any side"),
+            Self::Toward(direction) => direction,
+        };
+        let axis = |i: usize| (0..3).all(|j| j == i || direction[j] == 0);
+        match (0..3).find(|&i| axis(i)) {
+            Some(i) => {
+                let sign = if direction[i] < 0 { '-' } else { '+' };
+                write!(f, "toward {sign}{}", ["x", "y", "z"][i])
+            }
+            None => {
+                let [x, y, z] = direction.map(|part| f64::from(part) / 100.0);
+                write!(f, "toward ({x}, {y}, {z})")
+            }
+        }
+    }
 }
 
 /// A solid of a [`Builder`]; possibly empty.
@@ -72,6 +110,8 @@ impl SolidId {
 #[derive(Debug)]
 pub(crate) enum BuilderNode {
     Leaf(Primitive),
+    /// A solid that is replaced by a bounded one when the tree is finished.
+    Open(OpenNode),
     Operation {
         op: Operation,
         children: Vec<usize>,
@@ -82,6 +122,14 @@ pub(crate) enum BuilderNode {
         /// The last entry of [`Builder::entry`] that contributed to the placement.
         entry: usize,
     },
+}
+
+/// A solid without a bound.
+#[derive(Debug, Clone)]
+pub(crate) enum OpenNode {
+    Leaf(UnboundedPrimitive),
+    /// The outside of a solid that is not moved; of the empty one, everything.
+    Complement(Option<usize>),
 }
 
 /// The placement of a solid, as the caller requested it.
@@ -161,6 +209,8 @@ pub struct Builder {
     leaves: Vec<u64>,
     /// Whether each draft contains a solid of another builder.
     foreign: Vec<bool>,
+    /// Whether each draft contains a solid without a bound.
+    open: Vec<bool>,
     entries: Vec<Entry>,
 }
 
@@ -174,6 +224,7 @@ impl Default for Builder {
             drafts: Vec::new(),
             leaves: Vec::new(),
             foreign: Vec::new(),
+            open: Vec::new(),
             entries: Vec::new(),
         }
     }
@@ -186,14 +237,13 @@ impl Builder {
     }
 
     fn add(&mut self, draft: BuilderNode, leaves: u64) -> SolidId {
-        let foreign = match &draft {
-            BuilderNode::Leaf(_) => false,
-            BuilderNode::Operation { children, .. } => children.iter().any(|&c| self.foreign[c]),
-            BuilderNode::Moved { child, .. } => self.foreign[*child],
-        };
+        let any = |flags: &[bool]| draft.children().iter().any(|&child| flags[child]);
+        let (foreign, open) = (any(&self.foreign), any(&self.open));
+        let open = open || matches!(draft, BuilderNode::Open(_));
         self.drafts.push(draft);
         self.leaves.push(leaves);
         self.foreign.push(foreign);
+        self.open.push(open);
         self.solid(self.drafts.len() - 1)
     }
 
@@ -214,6 +264,7 @@ impl Builder {
         });
         self.leaves.push(0);
         self.foreign.push(true);
+        self.open.push(false);
         Some(self.drafts.len() - 1)
     }
 
@@ -242,6 +293,13 @@ impl Builder {
         self.drafts
             .extend(other.drafts.iter().map(|draft| match draft {
                 BuilderNode::Leaf(primitive) => BuilderNode::Leaf(primitive.clone()),
+                BuilderNode::Open(OpenNode::Leaf(primitive)) => {
+                    BuilderNode::Open(OpenNode::Leaf(primitive.clone()))
+                }
+                BuilderNode::Open(OpenNode::Complement(child)) => {
+                    let child = child.map(|child| child + drafts);
+                    BuilderNode::Open(OpenNode::Complement(child))
+                }
                 BuilderNode::Operation { op, children } => BuilderNode::Operation {
                     op: *op,
                     children: children.iter().map(|child| child + drafts).collect(),
@@ -258,12 +316,44 @@ impl Builder {
             }));
         self.leaves.extend(&other.leaves);
         self.foreign.extend(&other.foreign);
+        self.open.extend(&other.open);
         Ok(self.solid(slot.index + drafts))
     }
 
     /// A primitive in its own frame.
     pub fn primitive(&mut self, primitive: Primitive) -> SolidId {
         self.add(BuilderNode::Leaf(primitive), 1)
+    }
+
+    /// A solid without a bound in its own frame. Other solids must bound the part.
+    pub fn unbounded(&mut self, primitive: UnboundedPrimitive) -> SolidId {
+        self.add(BuilderNode::Open(OpenNode::Leaf(primitive)), 1)
+    }
+
+    /// The outside of a part. Other solids must bound the whole.
+    pub fn complement(&mut self, part: SolidId) -> SolidId {
+        let Some(index) = self.place_of(part) else {
+            return self.add(BuilderNode::Open(OpenNode::Complement(None)), 0);
+        };
+        match &self.drafts[index] {
+            BuilderNode::Open(OpenNode::Complement(Some(inner))) => self.solid(*inner),
+            BuilderNode::Open(OpenNode::Complement(None)) => SolidId::EMPTY,
+            BuilderNode::Moved {
+                child,
+                placement,
+                entry,
+            } => {
+                let (child, placement, entry) = (*child, placement.clone(), *entry);
+                let inner = self.solid(child);
+                let outside = self.complement(inner);
+                self.placed(outside, placement, self.placings(entry))
+            }
+            _ => {
+                let leaves = self.leaves[index];
+                let outside = BuilderNode::Open(OpenNode::Complement(Some(index)));
+                self.add(outside, leaves)
+            }
+        }
     }
 
     /// An operation on parts. It gives the empty part if there are no parts, or if the result is
@@ -326,11 +416,27 @@ impl Builder {
     }
 
     fn place(&mut self, part: SolidId, placement: Placement, placing: Placing) -> SolidId {
+        self.placed(part, placement, vec![placing])
+    }
+
+    /// The placings that a placement consists of, from the first to the last.
+    fn placings(&self, entry: usize) -> Vec<Placing> {
+        let mut placings = Vec::new();
+        let mut next = Some(entry);
+        while let Some(entry) = next.map(|index| &self.entries[index]) {
+            placings.push(entry.placing.clone());
+            next = entry.before;
+        }
+        placings.reverse();
+        placings
+    }
+
+    fn placed(&mut self, part: SolidId, placement: Placement, placings: Vec<Placing>) -> SolidId {
         let Some(child) = self.place_of(part) else {
             return SolidId::EMPTY;
         };
         // Consecutive placements are merged, so that the cost of a use is that of its leaves.
-        let (child, placement, before) = match &self.drafts[child] {
+        let (child, placement, mut before) = match &self.drafts[child] {
             // The limit is exceeded for good: finishing the part is an error, wherever it is
             // placed.
             BuilderNode::Moved { placement, .. } if placement.bits() > MAX_MOTION_BITS => {
@@ -341,9 +447,14 @@ impl Builder {
                 placement: inner,
                 entry,
             } => (*child, inner.then(&placement), Some(*entry)),
-            BuilderNode::Leaf(_) | BuilderNode::Operation { .. } => (child, placement, None),
+            BuilderNode::Leaf(_) | BuilderNode::Open(_) | BuilderNode::Operation { .. } => {
+                (child, placement, None)
+            }
         };
-        self.entries.push(Entry { placing, before });
+        for placing in placings {
+            self.entries.push(Entry { placing, before });
+            before = Some(self.entries.len() - 1);
+        }
         let leaves = self.leaves[child];
         let draft = BuilderNode::Moved {
             child,
@@ -375,7 +486,7 @@ impl Builder {
     /// The tree of one part.
     ///
     /// # Errors
-    /// The tree exceeds a limit, or the part belongs to another builder.
+    /// The tree exceeds a limit, the part has no bound, or it belongs to another builder.
     pub fn finish(&self, part: SolidId) -> Result<Tree, TreeError> {
         if self.is_foreign(part) {
             return Err(TreeError::ForeignSolid);
@@ -387,9 +498,38 @@ impl Builder {
         if leaves > MAX_LEAVES {
             return Err(TreeError::TooManyLeaves { leaves });
         }
+        if self.open[top] {
+            let (bounded, part) = self.bounded(part)?;
+            return bounded.finish(part);
+        }
         let mut expansion = Expansion::new(self);
-        expansion.run(top)?;
+        expansion.run(top, Placement::default())?;
         Ok(expansion.tree)
+    }
+
+    /// Whether a part contains solids without a bound.
+    pub(crate) fn is_open(&self, part: SolidId) -> bool {
+        self.draft_of(part).is_some_and(|draft| self.open[draft])
+    }
+
+    /// The same part in another builder, with bounded solids in place of those without a bound.
+    ///
+    /// # Errors
+    /// The part has no bound.
+    pub(crate) fn bounded(&self, part: SolidId) -> Result<(Self, SolidId), TreeError> {
+        unbounded::bounded(self, part)
+    }
+}
+
+impl BuilderNode {
+    /// The components.
+    fn children(&self) -> &[usize] {
+        match self {
+            Self::Leaf(_) | Self::Open(OpenNode::Leaf(_)) => &[],
+            Self::Open(OpenNode::Complement(child)) => child.as_slice(),
+            Self::Operation { children, .. } => children,
+            Self::Moved { child, .. } => std::slice::from_ref(child),
+        }
     }
 }
 

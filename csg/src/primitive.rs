@@ -4,9 +4,11 @@ mod conjugate_radii;
 mod oblique;
 #[cfg(test)]
 mod tests;
+mod unbounded;
 
 pub use conjugate_radii::ConjugateRadii;
 pub use oblique::ObliqueFrustum;
+pub use unbounded::UnboundedPrimitive;
 
 use std::fmt;
 use std::sync::Arc;
@@ -157,6 +159,8 @@ pub enum Dimension {
     Major,
     /// The minor radius of a torus.
     Minor,
+    /// The radius of a cone without an end at the height 1.
+    Slope,
 }
 
 impl Dimension {
@@ -181,6 +185,7 @@ impl fmt::Display for Dimension {
             Self::Top => "top radius",
             Self::Major => "major radius",
             Self::Minor => "minor radius",
+            Self::Slope => "slope",
         })
     }
 }
@@ -207,6 +212,9 @@ pub enum PrimitiveError {
     /// The axes of an oblique frustum or an ellipsoid must not lie in one plane.
     #[error("three axes must not lie in one plane")]
     Flat,
+    /// A half-space has a side.
+    #[error("the normal must not be zero")]
+    NoNormal,
 }
 
 impl PrimitiveError {
@@ -217,7 +225,7 @@ impl PrimitiveError {
             Self::NoRadius => Dimension::Top,
             Self::AcrossAxis => Dimension::Major,
             Self::ObliqueArc => Dimension::Top,
-            Self::Flat => Dimension::Height,
+            Self::Flat | Self::NoNormal => Dimension::Height,
         }
     }
 }

@@ -28,10 +28,10 @@ impl<'a> Expansion<'a> {
         }
     }
 
-    pub(super) fn run(&mut self, top: usize) -> Result<(), TreeError> {
+    pub(super) fn run(&mut self, top: usize, placement: Placement) -> Result<(), TreeError> {
         self.tasks.push(Task {
             draft: top,
-            placement: Rc::new(Placement::default()),
+            placement: Rc::new(placement),
             parent: None,
             minuend: false,
         });
@@ -44,6 +44,7 @@ impl<'a> Expansion<'a> {
     fn expand(&mut self, task: Task) -> Result<(), TreeError> {
         match &self.builder.drafts[task.draft] {
             BuilderNode::Leaf(primitive) => self.expand_leaf(primitive, &task),
+            BuilderNode::Open(_) => return Err(TreeError::Unbounded(UnboundedSide::Everywhere)),
             BuilderNode::Operation { op, children } => self.expand_operation(*op, children, &task),
             BuilderNode::Moved {
                 child, placement, ..

@@ -30,7 +30,7 @@ pub use error::{ErrorKind, ReadError};
 use error::{OtherText, SpannedError};
 pub use includes::{IncludeError, IncludeLoader, IncludePath, Includes, ValueOverride};
 
-use crate::builder::{Builder, SolidId};
+use crate::builder::{Builder, SolidId, TreeError};
 use crate::lettering::Fonts;
 use crate::tree::Tree;
 use premio_text::escape::quote;
@@ -258,10 +258,19 @@ impl Program {
 
     fn finished(&self) -> Result<Tree, SpannedError> {
         self.builder.finish(self.part).map_err(|error| {
-            let expected = "a description within the limits";
             let PartPlace { span, text } = &self.place;
-            SpannedError::limit(span.clone(), error.to_string(), expected)
-                .moved(span.clone(), text.clone())
+            let found = error.to_string();
+            let error = match error {
+                TreeError::Unbounded(_) => {
+                    let expected = "solids that bound it on every side";
+                    SpannedError::input(span.clone(), found, expected)
+                }
+                _ => {
+                    let expected = "a description within the limits";
+                    SpannedError::limit(span.clone(), found, expected)
+                }
+            };
+            error.moved(span.clone(), text.clone())
         })
     }
 

@@ -60,6 +60,7 @@ pub(super) fn bad_length(
     let found = match (value, error) {
         (None, PrimitiveError::AcrossAxis) => "a figure that crosses the axis".to_owned(),
         (_, PrimitiveError::Flat) => "axes in one plane".to_owned(),
+        (_, PrimitiveError::NoNormal) => "the normal (0, 0, 0)".to_owned(),
         (None, PrimitiveError::ObliqueArc) => "an arc about another point".to_owned(),
         (Some(value), _) => show(value),
         (None, _) => "a wrong length".to_owned(),
@@ -70,6 +71,7 @@ pub(super) fn bad_length(
         PrimitiveError::NoRadius => "one radius greater than zero".to_owned(),
         PrimitiveError::AcrossAxis => "a figure on one side of the axis".to_owned(),
         PrimitiveError::Flat => "axes that span space".to_owned(),
+        PrimitiveError::NoNormal => "a normal of some length".to_owned(),
         PrimitiveError::ObliqueArc => "arcs about the origin, where a figure is scaled".to_owned(),
     };
     let is_about_circles = error == PrimitiveError::ObliqueArc;

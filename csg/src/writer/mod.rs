@@ -14,7 +14,7 @@ mod turns;
 
 use premio_kernel::number::rational::Rational;
 
-use crate::builder::{Builder, BuilderNode, MAX_LEAVES, Placing, SolidId};
+use crate::builder::{Builder, BuilderNode, MAX_LEAVES, Placing, SolidId, TreeError};
 use crate::primitive::{MirrorImage, Primitive};
 use crate::reader::Format;
 use crate::transform::{Transform, TransformStep};
@@ -49,6 +49,9 @@ pub enum WriteError {
     /// The faces of polyhedra in `.csg` have no holes.
     #[error("`.csg` cannot represent a polyhedron with a hole in a face")]
     Holes,
+    /// The part has no bound.
+    #[error(transparent)]
+    Unbounded(TreeError),
     /// The text would be too long.
     #[error("a text of more than {MAX_TEXT} bytes")]
     TooLong,
@@ -59,10 +62,10 @@ pub enum WriteError {
 /// Numbers are written with all their digits. What a language cannot represent is written to f64
 /// precision: in `.padl` rotations about other than coordinate axes, in `.csg` rotations by other
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers without a finite
-/// decimal.
+/// decimal. A bounded solid is written in place of one without a bound.
 ///
 /// # Errors
-/// The solid belongs to another builder or has too many primitives, the language is read only or
+/// The solid belongs to another builder, has too many primitives or no bound, the language is read only or
 /// has no word for the empty solid, or the text is too long.
 pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String, WriteError> {
     if builder.is_foreign(part) {
@@ -71,6 +74,10 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     let leaves = builder.leaves(part);
     if leaves > MAX_LEAVES {
         return Err(WriteError::TooManyLeaves { leaves });
+    }
+    if builder.is_open(part) {
+        let (bounded, part) = builder.bounded(part).map_err(WriteError::Unbounded)?;
+        return write(&bounded, part, format);
     }
     let top = builder.draft_of(part).map(Use::new);
     match format {
@@ -116,7 +123,7 @@ fn has_primitive(builder: &Builder, part: SolidId, is_it: impl Fn(&Primitive) ->
         }
         match builder.draft(draft) {
             BuilderNode::Leaf(primitive) if is_it(primitive) => return true,
-            BuilderNode::Leaf(_) => {}
+            BuilderNode::Leaf(_) | BuilderNode::Open(_) => {}
             BuilderNode::Operation { children, .. } => ahead.extend(children),
             BuilderNode::Moved { child, .. } => ahead.push(*child),
         }
@@ -308,8 +315,8 @@ fn enter(
                 }
             }
         }
-        // Consecutive placements are merged.
-        BuilderNode::Moved { .. } => {}
+        // Consecutive placements are merged, and solids without a bound were replaced.
+        BuilderNode::Moved { .. } | BuilderNode::Open(_) => {}
     }
 }
 

@@ -19,10 +19,11 @@ use self::solids::{Solid, Unsupported, UnsupportedWords};
 use super::error::SpannedError;
 use super::frame::Vector;
 use super::notes::{Notes, Remarks};
-use super::number::literal;
+use super::number::{bad_length, literal};
 use super::rigid_fit::F64_DIGITS;
 use super::{PartPlace, Program, ReadOptions, StandaloneText};
 use crate::builder::{Builder, SolidId};
+use crate::primitive::UnboundedPrimitive;
 use crate::tree::Operation;
 use premio_text::LineColumn;
 use premio_text::escape::quote;
@@ -365,6 +366,13 @@ impl<'a> Reader<'a> {
     }
 
     fn solid(&mut self, object: &Object<'_>) -> Result<SolidId, SpannedError> {
+        if object.kind.text == "half" {
+            let [normal] = object.vectors(["N"])?;
+            let half_space = UnboundedPrimitive::half_space(normal, object.number("d")?);
+            let half_space =
+                half_space.map_err(|error| bad_length(error, None, object.kind.span.clone()))?;
+            return Ok(self.builder.unbounded(half_space));
+        }
         let solid = self.shape(object)?.map_err(|reason| {
             let UnsupportedWords { found, expected } = reason.words();
             let found = format!("{}, {found}", quote(object.name.text));
@@ -376,7 +384,7 @@ impl<'a> Reader<'a> {
     }
 
     fn shape(&self, object: &Object<'_>) -> Result<Result<Solid, Unsupported>, SpannedError> {
-        const KNOWN: [&str; 6] = ["arb8", "ell", "sph", "tgc", "rec", "tor"];
+        const KNOWN: [&str; 7] = ["arb8", "ell", "half", "sph", "tgc", "rec", "tor"];
         Ok(match object.kind.text {
             "ell" | "sph" => solids::ellipsoid(object.vectors(["V", "A", "B", "C"])?),
             "tgc" | "rec" => solids::cone(object.vectors(["V", "H", "A", "B", "C", "D"])?),

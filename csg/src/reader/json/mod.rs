@@ -6,6 +6,7 @@ mod figure;
 mod oblique;
 mod polyhedron;
 mod region;
+mod unbounded;
 mod value;
 
 use std::ops::Range;
@@ -51,17 +52,20 @@ pub(super) fn read(source: &str) -> Result<Program, SpannedError> {
 enum SolidOperation {
     Set(Operation),
     Hull,
+    /// The outside of a union.
+    Complement,
 }
 
-const OPERATIONS: [(&str, SolidOperation); 4] = [
+const OPERATIONS: [(&str, SolidOperation); 5] = [
     ("union", SolidOperation::Set(Operation::Union)),
     ("intersection", SolidOperation::Set(Operation::Intersection)),
     ("difference", SolidOperation::Set(Operation::Difference)),
     ("hull", SolidOperation::Hull),
+    ("complement", SolidOperation::Complement),
 ];
 
 /// The primitives, and the keys of each besides `prim` and `transform`.
-const PRIMITIVES: [(&str, &[&str]); 12] = [
+const PRIMITIVES: [(&str, &[&str]); 15] = [
     ("block", &["size"]),
     ("wedge", &["size"]),
     ("cylinder", &["r", "h"]),
@@ -74,6 +78,9 @@ const PRIMITIVES: [(&str, &[&str]); 12] = [
     ("polyhedron", &["points", "faces"]),
     ("oblique_frustum", &["x", "y", "z", "top"]),
     ("ellipsoid", &["x", "y", "z"]),
+    ("half_space", &["normal", "offset"]),
+    ("infinite_cylinder", &["r"]),
+    ("infinite_cone", &["slope"]),
 ];
 
 /// A pending step; the solids created so far are on a stack.
@@ -112,6 +119,10 @@ impl<'a> Reader<'a> {
                     let children = parts.split_off(parts.len().saturating_sub(count));
                     let part = match op {
                         SolidOperation::Set(op) => self.builder.operation(op, &children),
+                        SolidOperation::Complement => {
+                            let union = self.builder.operation(Operation::Union, &children);
+                            self.builder.complement(union)
+                        }
                         SolidOperation::Hull => {
                             let hull = convex_hull(self.builder, &children, 0.0);
                             hull.map_err(|error| construction_error(&error, &span))?
@@ -207,6 +218,10 @@ impl<'a> Reader<'a> {
                 let ellipsoid = ellipsoid::ellipsoid(fields)?;
                 Some(self.builder.primitive(ellipsoid))
             }
+            "half_space" | "infinite_cylinder" | "infinite_cone" => {
+                let unbounded = unbounded::unbounded(name, fields)?;
+                Some(self.builder.unbounded(unbounded))
+            }
             _ => None,
         };
         if let Some(part) = swept {
@@ -270,7 +285,11 @@ fn coordinates(
 fn length_index(dimension: Dimension, count: usize) -> usize {
     let last = count.saturating_sub(1);
     match dimension {
-        Dimension::X | Dimension::Radius | Dimension::Base | Dimension::Major => 0,
+        Dimension::X
+        | Dimension::Radius
+        | Dimension::Base
+        | Dimension::Major
+        | Dimension::Slope => 0,
         Dimension::Y | Dimension::Top | Dimension::Minor => last.min(1),
         Dimension::Z | Dimension::Height => last,
     }

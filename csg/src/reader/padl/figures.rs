@@ -1,4 +1,4 @@
-//! Figures of the plane and solids of them: their evaluation.
+//! Figures of the plane, solids of them, and solids without a bound: their evaluation.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -19,7 +19,7 @@ use crate::builder::SolidId;
 use crate::construction::convex_hull;
 use crate::figure::{ContourCorner, Figure, FigureArc, FigureError, FigureOperation, OffsetJoin};
 use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
-use crate::primitive::{Dimension, Primitive, PrimitiveError, RevolutionAngle};
+use crate::primitive::{Dimension, Primitive, PrimitiveError, RevolutionAngle, UnboundedPrimitive};
 use crate::transform::Transform;
 use crate::tree::Operation;
 
@@ -37,6 +37,7 @@ fn plane_operation(operation: Operation) -> FigureOperation {
 /// The arguments of a construction, by their indices.
 struct Given {
     figure: Option<Spanned<Option<Rc<Region>>>>,
+    solid: SolidId,
     numbers: [Option<Number>; 4],
 }
 
@@ -47,18 +48,21 @@ impl Given {
     ) -> Result<Self, SpannedError> {
         let mut given = Self {
             figure: None,
+            solid: SolidId::EMPTY,
             numbers: [None, None, None, None],
         };
         for (index, operand) in arguments {
             let name = construction.arguments().get(index).copied();
             let name = name.unwrap_or_default();
             let what_for = match name {
-                "FIGURE" => format!("for `{}`", construction.word()),
+                "FIGURE" | "SOLID" => format!("for `{}`", construction.word()),
                 name => format!("for `{name}`"),
             };
             let place = operand.span.clone();
             if name == "FIGURE" {
                 given.figure = Some(Spanned::new(operand.figure(&what_for)?, place));
+            } else if name == "SOLID" {
+                given.solid = operand.solid(&what_for)?;
             } else if let Some(slot) = given.numbers.get_mut(index) {
                 *slot = Some(Spanned::new(operand.number(&what_for)?, place));
             }
@@ -82,6 +86,26 @@ impl Given {
             known => Ok(known.map_or(Rational::ZERO, |known| known.value.clone())),
         }
     }
+}
+
+/// A solid without a bound.
+fn unbounded(
+    construction: Construction,
+    given: &Given,
+    span: &Range<usize>,
+) -> Result<UnboundedPrimitive, SpannedError> {
+    let number = |index: usize| {
+        let known = given.number(index);
+        known.map_or(Rational::ZERO, |known| known.value.clone())
+    };
+    let made = match construction {
+        Construction::InfiniteCylinder => {
+            UnboundedPrimitive::cylinder(given.length(0, Dimension::Radius)?)
+        }
+        Construction::InfiniteCone => UnboundedPrimitive::cone(given.length(0, Dimension::Slope)?),
+        _ => UnboundedPrimitive::half_space([0, 1, 2].map(number), number(3)),
+    };
+    made.map_err(|error| bad_length(error, None, span.clone()))
 }
 
 impl Machine {
@@ -146,6 +170,13 @@ impl Machine {
             Construction::Offset => offset(&given, span)?,
             Construction::Prism => self.prism(&given, span)?,
             Construction::Revolution => self.revolution(&given, span)?,
+            Construction::HalfSpace
+            | Construction::InfiniteCylinder
+            | Construction::InfiniteCone => {
+                let primitive = unbounded(construction, &given, span)?;
+                Value::Solid(self.builder.unbounded(primitive))
+            }
+            Construction::Outside => Value::Solid(self.builder.complement(given.solid)),
         };
         self.push(value, span);
         Ok(())

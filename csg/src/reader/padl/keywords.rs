@@ -118,7 +118,7 @@ impl Function {
     }
 }
 
-/// A word that makes a figure, or a solid of a figure.
+/// A word with arguments that makes a figure, a solid of a figure, or a solid without a bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Construction {
     Rectangle,
@@ -126,6 +126,10 @@ pub(super) enum Construction {
     Offset,
     Prism,
     Revolution,
+    HalfSpace,
+    InfiniteCylinder,
+    InfiniteCone,
+    Outside,
 }
 
 impl Construction {
@@ -136,6 +140,10 @@ impl Construction {
             Self::Offset => "OFF",
             Self::Prism => "PRI",
             Self::Revolution => "REV",
+            Self::HalfSpace => "HALF",
+            Self::InfiniteCylinder => "ICYL",
+            Self::InfiniteCone => "ICON",
+            Self::Outside => "OUT",
         }
     }
 
@@ -147,13 +155,23 @@ impl Construction {
             Self::Offset => &["FIGURE", "R", "DELTA", "CHAMFER"],
             Self::Prism => &["FIGURE", "H", "TOP"],
             Self::Revolution => &["FIGURE", "ANGLE"],
+            Self::HalfSpace => &["NX", "NY", "NZ", "D"],
+            Self::InfiniteCylinder => &["R"],
+            Self::InfiniteCone => &["SLOPE"],
+            Self::Outside => &["SOLID"],
         }
     }
 
     pub(super) fn required(self) -> usize {
         match self {
+            Self::HalfSpace => 3,
             Self::Rectangle | Self::Prism => 2,
-            Self::Disc | Self::Offset | Self::Revolution => 1,
+            Self::Disc
+            | Self::Offset
+            | Self::Revolution
+            | Self::InfiniteCylinder
+            | Self::InfiniteCone
+            | Self::Outside => 1,
         }
     }
 }
@@ -192,9 +210,9 @@ pub(super) enum Predefined {
 }
 
 /// All predefined words, in the spelling of messages.
-pub(super) const PREDEFINED: [&str; 18] = [
+pub(super) const PREDEFINED: [&str; 22] = [
     "sin", "cos", "tan", "sqrt", "pi", "min", "max", "FOR", "SQU", "CIR", "PGN", "OFF", "PRI",
-    "REV", "POLY", "OBL", "ELL", "HULL",
+    "REV", "POLY", "OBL", "ELL", "HULL", "HALF", "ICYL", "ICON", "OUT",
 ];
 
 impl Predefined {
@@ -211,6 +229,10 @@ impl Predefined {
             "OFF" => Self::Construction(Construction::Offset),
             "PRI" => Self::Construction(Construction::Prism),
             "REV" => Self::Construction(Construction::Revolution),
+            "HALF" => Self::Construction(Construction::HalfSpace),
+            "ICYL" => Self::Construction(Construction::InfiniteCylinder),
+            "ICON" => Self::Construction(Construction::InfiniteCone),
+            "OUT" => Self::Construction(Construction::Outside),
             "PGN" => Self::Outline(Outline::Polygon),
             "POLY" => Self::Outline(Outline::Polyhedron),
             "OBL" => Self::Outline(Outline::ObliqueFrustum),

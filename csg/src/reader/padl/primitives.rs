@@ -58,7 +58,11 @@ fn make(shape: Shape, value: impl Fn(usize) -> Rational) -> Result<Primitive, Pr
 /// The index of a shape's argument to which an error refers.
 fn argument_index(shape: Shape, dimension: Dimension) -> usize {
     match dimension {
-        Dimension::X | Dimension::Radius | Dimension::Base | Dimension::Major => 0,
+        Dimension::X
+        | Dimension::Radius
+        | Dimension::Base
+        | Dimension::Major
+        | Dimension::Slope => 0,
         Dimension::Y | Dimension::Height | Dimension::Minor => 1,
         Dimension::Z => 2,
         // A cone with equal radii is a cylinder.

@@ -1,12 +1,13 @@
 //! The keywords of the scene description language that are interpreted, and those that are skipped.
 
 /// The solids that are represented exactly.
-pub(super) const SOLIDS: [&str; 10] = [
+pub(super) const SOLIDS: [&str; 11] = [
     "box",
     "sphere",
     "cylinder",
     "cone",
     "torus",
+    "plane",
     "union",
     "merge",
     "intersection",
@@ -15,7 +16,7 @@ pub(super) const SOLIDS: [&str; 10] = [
 ];
 
 /// Objects that are not: other primitives, or no solids.
-pub(super) const NOT_OURS: [&str; 27] = [
+pub(super) const NOT_OURS: [&str; 26] = [
     "bicubic_patch",
     "blob",
     "cubic",
@@ -30,7 +31,6 @@ pub(super) const NOT_OURS: [&str; 27] = [
     "mesh2",
     "ovus",
     "parametric",
-    "plane",
     "poly",
     "polygon",
     "polynomial",

@@ -313,7 +313,7 @@ impl<'a> Reader<'a> {
         let end = self.cursor.source().len();
         match self.names.get(name).cloned() {
             Some(Value::Object(object, span)) => {
-                let part = object.solid(&mut self.builder, span.clone())?;
+                let part = object.solid(&mut self.builder)?;
                 Ok(Spanned::new(part, span))
             }
             Some(other) => {
@@ -354,8 +354,8 @@ impl<'a> Reader<'a> {
             });
         }
         let mut parts = Vec::new();
-        for Spanned { value, span } in std::mem::take(&mut self.scene) {
-            parts.push(value.solid(&mut self.builder, span)?);
+        for object in std::mem::take(&mut self.scene) {
+            parts.push(object.value.solid(&mut self.builder)?);
         }
         Ok(self.builder.operation(Operation::Union, &parts))
     }

@@ -132,6 +132,15 @@ impl Reader<'_> {
                 let radius = self.number()?;
                 solid::sphere(&mut self.builder, middle, radius)
             }
+            "plane" => {
+                let Spanned {
+                    value: normal,
+                    span,
+                } = self.vector()?;
+                self.comma();
+                let distance = self.number()?.value;
+                solid::plane(&mut self.builder, normal, distance, &span)
+            }
             "torus" => {
                 let major = self.number()?.value;
                 self.comma();
@@ -206,12 +215,12 @@ impl Reader<'_> {
         };
         match (frame.kind, <[Object; 1]>::try_from(children)) {
             (Kind::Single, Ok([object])) => object,
-            (_, Ok(one)) => solid::combined(&mut self.builder, op, one.into(), frame.word.span()),
-            (_, Err(all)) => solid::combined(&mut self.builder, op, all, frame.word.span()),
+            (_, Ok(one)) => solid::combined(&mut self.builder, op, one.into()),
+            (_, Err(all)) => solid::combined(&mut self.builder, op, all),
         }
     }
 
-    fn modified(&mut self, mut object: Object, word: Lexeme) -> Result<Object, SpannedError> {
+    fn modified(&mut self, object: Object, word: Lexeme) -> Result<Object, SpannedError> {
         let text = self.cursor.text(word);
         match text {
             "translate" => {
@@ -227,8 +236,11 @@ impl Reader<'_> {
                 Ok(object.scaled(&mut self.builder, by, span))
             }
             "inverse" => {
-                object.inverse ^= self.switch().unwrap_or(true);
-                Ok(object)
+                let is_inverse = self.switch().unwrap_or(true);
+                Ok(match is_inverse {
+                    true => object.inverse(&mut self.builder),
+                    false => object,
+                })
             }
             _ if SURFACES.contains(&text) => {
                 self.pass_over_block(word)?;

@@ -5,13 +5,13 @@ use std::ops::Range;
 use premio_kernel::number::rational::Rational;
 
 use super::super::error::SpannedError;
-use super::super::frame::{Axis, Vector, difference};
+use super::super::frame::{Axis, Vector, difference, length};
 use super::super::number::bad_length;
 use super::super::refusal::construction_error;
 use super::super::spanned::Spanned;
 use crate::builder::{Builder, SolidId};
 use crate::construction::{AffineMap, mapped};
-use crate::primitive::{Primitive, PrimitiveError};
+use crate::primitive::{Primitive, PrimitiveError, UnboundedPrimitive};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
@@ -26,17 +26,15 @@ pub(super) enum Shape {
     Refused(Box<SpannedError>),
 }
 
-/// An object, or its complement.
+/// An object.
 #[derive(Debug, Clone)]
 pub(super) struct Object {
     pub(super) shape: Shape,
-    pub(super) inverse: bool,
 }
 
 impl From<Shape> for Object {
     fn from(shape: Shape) -> Self {
-        let inverse = false;
-        Self { shape, inverse }
+        Self { shape }
     }
 }
 
@@ -124,32 +122,39 @@ pub(super) fn torus(
     placed(builder, made, Some(&value), &span, moves).map(Object::from)
 }
 
+/// The half-space on the side of a plane to which the normal does not point, at a distance from the
+/// origin along the normal.
+pub(super) fn plane(
+    builder: &mut Builder,
+    normal: Vector,
+    distance: Rational,
+    span: &Range<usize>,
+) -> Result<Object, SpannedError> {
+    let offset = length(&normal).map_or(Rational::ZERO, |length| length * distance);
+    let made = UnboundedPrimitive::half_space(normal, offset);
+    let primitive = made.map_err(|error| bad_length(error, None, span.clone()))?;
+    Ok(builder.unbounded(primitive).into())
+}
+
 impl Object {
-    /// The solid of an object that is not inverted.
-    pub(super) fn solid(
-        self,
-        builder: &mut Builder,
-        span: Range<usize>,
-    ) -> Result<SolidId, SpannedError> {
-        if self.inverse {
-            let expected = "a solid, or `inverse` in an intersection or a difference";
-            return Err(SpannedError::input(
-                span,
-                "what is outside of a solid",
-                expected,
-            ));
-        }
+    /// The solid of an object.
+    pub(super) fn solid(self, builder: &mut Builder) -> Result<SolidId, SpannedError> {
         self.shape.part(builder)
+    }
+
+    /// The outside of an object.
+    pub(super) fn inverse(self, builder: &mut Builder) -> Self {
+        self.changed(|shape| match shape.part(builder) {
+            Ok(part) => builder.complement(part).into(),
+            Err(fault) => fault.into(),
+        })
     }
 
     /// Applies a change unless the object is unsupported.
     fn changed(self, change: impl FnOnce(Shape) -> Object) -> Self {
         match self.shape {
             Shape::Refused(_) => self,
-            shape => Self {
-                inverse: self.inverse,
-                ..change(shape)
-            },
+            shape => change(shape),
         }
     }
 
@@ -253,49 +258,11 @@ impl Shape {
     }
 }
 
-/// An operation on objects, some of which may be inverted.
-pub(super) fn combined(
-    builder: &mut Builder,
-    op: Operation,
-    objects: Vec<Object>,
-    span: Range<usize>,
-) -> Object {
-    operation(builder, op, objects, span).unwrap_or_else(Object::from)
-}
-
-fn operation(
-    builder: &mut Builder,
-    op: Operation,
-    objects: Vec<Object>,
-    span: Range<usize>,
-) -> Result<Object, SpannedError> {
-    let mut kept = Vec::new();
-    let mut taken = Vec::new();
-    for (index, object) in objects.into_iter().enumerate() {
-        // Subtracting an inverted object means intersecting with the object.
-        let subtracted = op == Operation::Difference && index > 0;
-        let part = object.shape.part(builder)?;
-        match object.inverse != subtracted {
-            true => taken.push(part),
-            false => kept.push(part),
-        }
+/// An operation on objects.
+pub(super) fn combined(builder: &mut Builder, op: Operation, objects: Vec<Object>) -> Object {
+    let parts = objects.into_iter().map(|object| object.shape.part(builder));
+    match parts.collect::<Result<Vec<SolidId>, SpannedError>>() {
+        Ok(parts) => builder.operation(op, &parts).into(),
+        Err(fault) => fault.into(),
     }
-    let part = match op {
-        Operation::Union if taken.is_empty() => builder.operation(Operation::Union, &kept),
-        Operation::Intersection | Operation::Difference if !kept.is_empty() => {
-            let common = builder.operation(Operation::Intersection, &kept);
-            let all: Vec<SolidId> = std::iter::once(common).chain(taken).collect();
-            builder.operation(Operation::Difference, &all)
-        }
-        _ if taken.is_empty() => SolidId::EMPTY,
-        _ => {
-            let expected = "an operation that leaves a solid";
-            return Err(SpannedError::input(
-                span,
-                "what is outside of a solid",
-                expected,
-            ));
-        }
-    };
-    Ok(part.into())
 }

@@ -21,6 +21,24 @@ fn operations_and_primitives() {
     );
 }
 
+/// The normal has the length 3, so the plane is at the distance 1.
+#[test]
+fn solids_without_a_bound() {
+    let tree = json(
+        r#"{"op":"intersection","children":[
+            {"prim":"sphere","r":2},
+            {"prim":"half_space","normal":[2,2,1],"offset":3},
+            {"op":"complement","children":[{"prim":"infinite_cylinder","r":1},
+             {"prim":"infinite_cone","slope":2,"transform":[{"translate":[0,0,1]}]}]}
+        ]}"#,
+    );
+    assert_same_points(&tree, |[x, y, z]| {
+        let across = x.hypot(y);
+        let is_taken = across < 1.0 || (z > 1.0 && across < 2.0 * (z - 1.0));
+        x * x + y * y + z * z < 4.0 && (2.0 * x + 2.0 * y + z) < 3.0 && !is_taken
+    });
+}
+
 #[test]
 fn numbers_are_exact() {
     let tree = json(r#"{"prim":"sphere","r":0.1}"#);

@@ -97,7 +97,7 @@ fn json_values() {
     assert_snapshot!(json(r#"{"prim":"sphere","r":-1}"#), @"part:1:22: found the value -1, expected a radius greater than zero");
     assert_snapshot!(json(r#"{"prim":"block","size":[1,0,2]}"#), @"part:1:27: found the value 0, expected a size along y greater than zero");
     assert_snapshot!(json(r#"{"prim":"sphere","radius":1}"#), @"part:1:18: found the unknown key `radius`, expected one of `prim`, `transform`, `r` (did you mean `r`?)");
-    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron", "oblique_frustum", "ellipsoid" (did you mean `sphere`?)"#);
+    assert_snapshot!(json(r#"{"prim":"spere","r":1}"#), @r#"part:1:9: found the text `spere`, expected one of "block", "wedge", "cylinder", "cone", "frustum", "sphere", "torus", "prism", "revolution", "polyhedron", "oblique_frustum", "ellipsoid", "half_space", "infinite_cylinder", "infinite_cone" (did you mean `sphere`?)"#);
     assert_snapshot!(json(r#"{"op":"union"}"#), @"part:1:14: found an object without `children`, expected the key `children`");
     assert_snapshot!(json(r#"{"op":"union","children":{}}"#), @"part:1:26: found an object, expected an array of solids");
     assert_snapshot!(json(r#"{"op":"union","children":[1]}"#), @"part:1:27: found the number `1`, expected a solid: an object with `op` or `prim`");

@@ -112,6 +112,22 @@ fn operations() {
     points(inside_out, |p| held(p)[0] && !held(p)[1]);
     let inside_out = "difference { sphere { 0, 3 } sphere { 2*x, 3 inverse } }";
     points(inside_out, |p| held(p)[0] && held(p)[1]);
+    let outside =
+        "difference { sphere { 0, 3 } union { sphere { 2*x, 3 } sphere { 2*y, 3 } inverse } }";
+    points(outside, |p| held(p)[0] && (held(p)[1] || held(p)[2]));
+}
+
+/// The inside of a plane is the side from which its normal points away.
+#[test]
+fn planes() {
+    let text =
+        "intersection { plane { -x, 0 } plane { -y, 0 } plane { -z, 0 } plane { <2, 2, 1>, 1 } }";
+    points(text, |p| {
+        let above = 2.0 * p[0] + 2.0 * p[1] + p[2];
+        p.iter().all(|&x| x >= 0.0) && above <= 3.0
+    });
+    assert_snapshot!(pov("plane { y, 1 }"), @"part:1:1: found a part without a bound toward +x, expected solids that bound it on every side");
+    assert_snapshot!(pov("plane { 0*x, 1 }"), @"part:1:9: found the normal (0, 0, 0), expected a normal of some length");
 }
 
 #[test]
@@ -119,7 +135,7 @@ fn parts_by_name() {
     let text = "#declare A = box { 0, 1 }
         #declare B = object { A clipped_by { A } }
         #declare Step = 3*x; #declare C = union { object { A } object { A translate Step.x*y } }
-        plane { y, 0 }";
+        lathe { 2 }";
     let part = |name: &str| {
         let options = ReadOptions {
             part: Some(name.to_owned()),
@@ -129,16 +145,16 @@ fn parts_by_name() {
     };
     assert_eq!(part("C").unwrap().tree.leaves().count(), 2);
     assert!(part("B").is_err() && part("Step").is_err() && part("D").is_err());
-    assert_snapshot!(pov(text), @"part:4:9: found the object `plane`, expected one that is exact here: `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`");
+    assert_snapshot!(pov(text), @"part:4:9: found the object `lathe`, expected one that is exact here: `box`, `sphere`, `cylinder`, `cone`, `torus`, `plane`, `union`, `merge`, `intersection`, `difference`, `object`");
 }
 
 #[test]
 fn what_is_not_ours() {
-    assert_snapshot!(pov("sphere { 0, 1 }\nblob { threshold 0.6 component 1, 1, <0, 0, 0> }"), @"part:2:1: found the object `blob`, expected one that is exact here: `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`");
+    assert_snapshot!(pov("sphere { 0, 1 }\nblob { threshold 0.6 component 1, 1, <0, 0, 0> }"), @"part:2:1: found the object `blob`, expected one that is exact here: `box`, `sphere`, `cylinder`, `cone`, `torus`, `plane`, `union`, `merge`, `intersection`, `difference`, `object`");
     assert_snapshot!(pov("torus { 3, 1 scale <1, 2, 1> }"), @"part:1:20: found a map that changes the shape of revolutions, expected spheres, cylinders, cones, prisms or plane faces, or a scale equal in all directions");
     assert_snapshot!(pov("union { sphere { 0, 1 } box { -1, 1 clipped_by { sphere { 0, 1 } } } }"), @"part:1:37: found the modifier `clipped_by`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("cylinder { 0, y, 1 open }"), @"part:1:20: found the modifier `open`, expected `translate`, `rotate`, or `scale` the same in all directions");
-    assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found what is outside of a solid, expected a solid, or `inverse` in an intersection or a difference");
+    assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found a part without a bound on any side, expected solids that bound it on every side");
     assert_snapshot!(pov("torus { 1, 0 }"), @"part:1:12: found the value 0, expected a minor radius greater than zero");
     assert_snapshot!(pov("box { 0, <1, 0, 1> }"), @"part:1:10: found a box without volume, expected two corners that differ along x, y and z");
     assert_snapshot!(pov("cylinder { y, y, 1 }"), @"part:1:18: found an axis without length, expected two points that differ");
@@ -154,17 +170,17 @@ fn messages() {
     assert_snapshot!(pov(""), @"part:1:1: found no object in the scene, expected one at least");
     assert_snapshot!(pov("#declare Ball = sphere { 0, 1 }"), @"part:1:32: found no object in the scene, expected one at least (`--part` reads one of Ball)");
     assert_snapshot!(pov("sphere { 0, 1"), @"part:1:14: found the end of the file, expected a closing bracket (the bracket opened on line 1 is not closed)");
-    assert_snapshot!(pov("sphere { 0 1 } }"), @"part:1:16: found `}`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare`");
+    assert_snapshot!(pov("sphere { 0 1 } }"), @"part:1:16: found `}`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `plane`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare`");
     assert_snapshot!(pov("sphere { 0, <1, 2> }"), @"part:1:13: found a vector, expected a number");
     assert_snapshot!(pov("sphere { <1, 2, 3, 4>, 1 }"), @"part:1:10: found a vector of 4, expected a vector of three");
     assert_snapshot!(pov("sphere { 0, 1 translat x }"), @"part:1:15: found `translat`, expected an object, a modifier or `}` (did you mean `translate`?)");
-    assert_snapshot!(pov("spere { 0, 1 }"), @"part:1:1: found `spere`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare` (did you mean `sphere`?)");
+    assert_snapshot!(pov("spere { 0, 1 }"), @"part:1:1: found `spere`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `plane`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare` (did you mean `sphere`?)");
     assert_snapshot!(pov("sphere { 0, 1/0 }"), @"part:1:13: found a division by zero, expected a number other than zero");
     assert_snapshot!(pov("sphere { 0, (1 }"), @"part:1:16: found `}`, expected `)` or an operator");
     assert_snapshot!(pov("/* /* */ sphere { 0, 1 }"), @"part:1:1: found a comment without an end, expected a closing `*/`");
     assert_snapshot!(pov("#declare T = texture { pigment { rgb 1 } }\nobject { T }"), @"part:2:10: found `T`, which is neither a number nor an object, expected an object");
     assert_snapshot!(pov("object { Wheel(2) }"), @"part:1:10: found `Wheel`, expected an object (macros are not read)");
-    assert_snapshot!(pov("Wheel(2)"), @"part:1:1: found `Wheel`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare` (macros are not read)");
+    assert_snapshot!(pov("Wheel(2)"), @"part:1:1: found `Wheel`, expected an object, one of `box`, `sphere`, `cylinder`, `cone`, `torus`, `plane`, `union`, `merge`, `intersection`, `difference`, `object`, or `#declare` (macros are not read)");
     assert_snapshot!(pov("sphere { 0, 1 scale 0 }"), @"part:1:21: found a scale of zero, expected factors other than zero");
     assert_snapshot!(pov("#declare box = 3;"), @"part:1:10: found `box`, expected a name that is not a keyword");
 }

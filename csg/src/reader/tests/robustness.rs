@@ -3,7 +3,15 @@
 use super::*;
 use proptest::prelude::*;
 
-const SEEDS: [(&str, Format); 6] = [
+const SEEDS: [(&str, Format); 8] = [
+    (
+        "P = HALF(1, -1/3, 0, D=2) INT OUT(ICYL(R=1) UN ICON(SLOPE=.5) AT (ROTX=90, MOVZ=-7)) INT BLO(X=3, Y=4, Z=5)\n",
+        Format::Padl,
+    ),
+    (
+        r#"{"op":"difference","children":[{"prim":"sphere","r":2},{"op":"complement","children":[{"prim":"half_space","normal":[1,2,-2],"offset":1},{"prim":"infinite_cylinder","r":1,"transform":[{"translate":[1,2,3]}]},{"prim":"infinite_cone","slope":0.5}]}]}"#,
+        Format::Json,
+    ),
     (
         "N = 3\nHOLE(D, L=2*D) = CYL(R=D/2, H=L) AT (MOVZ=-min(L, 9)/2)\nROW(S, N=2) = S UN FOR i=1..N STEP 1: S AT (MOVX=4*i)\nP = BLO(X=9, Y=9, Z=1) DIF FOR i=0..N: FOR j=0..1: HOLE(D=sqrt(2)) AT (MOVX=i*cos(60), MOVY=j+sin(30)) DIF ROW(S=HOLE(1, L=3), N=max(1, 3)) AT (MOVX=pi)\n",
         Format::Padl,
@@ -54,7 +62,7 @@ proptest! {
         "\"op\"", "\"prim\"", "\"union\"", ":", "null", "\"", "#", "0", "1e400", "1e999999999999",
         "put", "tor", "comb", "tree", "{l A}", " ", "V {0 0 0}", "<", ">", "object", "sphere", "#declare", "scale",
         "difference", "inverse", ".x", "FOR", " i=0..3", "..", "STEP", "H(D)=", "H(", "D=", "sin(", "sqrt(", "min(", "pi", "INCLUDE",
-        "\"a.padl\"",
+        "\"a.padl\"", "HALF(", "OUT(",
     ]), 0..60)) {
         let text = words.concat();
         for format in Format::ALL {
@@ -64,7 +72,7 @@ proptest! {
 
     #[test]
     fn changed_files(
-        seed in 0usize..6,
+        seed in 0..SEEDS.len(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0u8..3, any::<u8>()), 1..8),
     ) {
         let (text, format) = SEEDS[seed];

@@ -1,0 +1,117 @@
+//! The removal of complements by De Morgan's laws.
+
+use super::{Builder, BuilderNode, OpenNode, SolidId};
+use crate::primitive::UnboundedPrimitive;
+use crate::tree::Operation;
+
+/// A solid, or the outside of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Signed {
+    pub solid: SolidId,
+    pub is_complement: bool,
+}
+
+impl Signed {
+    fn outside(self) -> Self {
+        Self {
+            is_complement: !self.is_complement,
+            ..self
+        }
+    }
+}
+
+impl From<SolidId> for Signed {
+    fn from(solid: SolidId) -> Self {
+        Self {
+            solid,
+            is_complement: false,
+        }
+    }
+}
+
+/// A copy of a draft without complements; `leaf` gives what stands for a primitive without a bound, of
+/// a draft.
+pub(super) fn rebuilt(
+    from: &Builder,
+    top: usize,
+    mut leaf: impl FnMut(&mut Builder, &UnboundedPrimitive, usize) -> SolidId,
+) -> (Builder, Signed) {
+    let mut to = Builder::new();
+    let is_used = used(from, top);
+    let mut copies: Vec<Signed> = Vec::with_capacity(top + 1);
+    for draft in 0..=top {
+        if !is_used[draft] {
+            copies.push(SolidId::EMPTY.into());
+            continue;
+        }
+        let copy = match from.draft(draft) {
+            BuilderNode::Leaf(primitive) => to.primitive(primitive.clone()).into(),
+            BuilderNode::Open(OpenNode::Leaf(primitive)) => leaf(&mut to, primitive, draft).into(),
+            BuilderNode::Open(OpenNode::Complement(child)) => {
+                let child = child.map_or(SolidId::EMPTY.into(), |child| copies[child]);
+                child.outside()
+            }
+            BuilderNode::Operation { op, children } => {
+                let children: Vec<Signed> = children.iter().map(|&child| copies[child]).collect();
+                combined(&mut to, *op, &children)
+            }
+            BuilderNode::Moved {
+                child,
+                placement,
+                entry,
+            } => {
+                let inner = copies[*child];
+                let placings = from.placings(*entry);
+                Signed {
+                    solid: to.placed(inner.solid, placement.clone(), placings),
+                    ..inner
+                }
+            }
+        };
+        copies.push(copy);
+    }
+    let whole = copies.pop().unwrap_or_else(|| SolidId::EMPTY.into());
+    (to, whole)
+}
+
+/// Whether each draft is a component of one.
+fn used(builder: &Builder, top: usize) -> Vec<bool> {
+    let mut is_used = vec![false; top + 1];
+    is_used[top] = true;
+    // Components come before what they compose.
+    for draft in (0..=top).rev() {
+        if is_used[draft] {
+            let children = builder.draft(draft).children();
+            children.iter().for_each(|&child| is_used[child] = true);
+        }
+    }
+    is_used
+}
+
+/// An operation on solids and complements.
+fn combined(builder: &mut Builder, op: Operation, operands: &[Signed]) -> Signed {
+    let operands = operands.iter().enumerate().map(|(i, &operand)| {
+        // A - B is what A and the outside of B have in common, and A + B is what is outside of all
+        // that the outsides of A and B have in common.
+        match op {
+            Operation::Intersection => operand,
+            Operation::Difference if i == 0 => operand,
+            Operation::Difference | Operation::Union => operand.outside(),
+        }
+    });
+    let (outside, inside): (Vec<Signed>, Vec<Signed>) = operands.partition(|o| o.is_complement);
+    let [outside, inside] =
+        [outside, inside].map(|all| all.iter().map(|o| o.solid).collect::<Vec<SolidId>>());
+    let common = match inside.is_empty() {
+        true => Signed::from(builder.operation(Operation::Union, &outside)).outside(),
+        false => {
+            let common = builder.operation(Operation::Intersection, &inside);
+            let all: Vec<SolidId> = [vec![common], outside].concat();
+            builder.operation(Operation::Difference, &all).into()
+        }
+    };
+    match op {
+        Operation::Union => common.outside(),
+        Operation::Intersection | Operation::Difference => common,
+    }
+}

@@ -6,7 +6,8 @@ mod operators;
 mod primitives;
 
 pub use primitives::{
-    block, cone, cylinder, ellipsoid, frustum, oblique_frustum, polyhedron, sphere, torus, wedge,
+    block, cone, cylinder, ellipsoid, frustum, half_space, infinite_cone, infinite_cylinder,
+    oblique_frustum, polyhedron, sphere, torus, wedge,
 };
 
 use crate::number::{ExactNumber, NumberError};
@@ -18,7 +19,7 @@ use premio_csg::construction::{AffineMap, ConstructionError, convex_hull, mapped
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::figure::{Figure, FigureError};
 use premio_csg::polyhedron::PolyhedronError;
-use premio_csg::primitive::{Primitive, PrimitiveError};
+use premio_csg::primitive::{Primitive, PrimitiveError, UnboundedPrimitive};
 use premio_csg::reader::{Format, Note};
 use premio_csg::recover::recovered;
 use premio_csg::transform::Transform;
@@ -72,7 +73,8 @@ pub enum ExpressionError {
 /// A solid as an expression of primitives, set operations and motions.
 ///
 /// Operators make larger expressions: `+` is the union, `-` the difference, `&` the intersection.
-/// All three are regularised, so that no face or edge hangs loose. A clone is cheap. An expression
+/// All three are regularised, so that no face or edge hangs loose. `!` is the complement: everything
+/// outside. The whole must be bounded. A clone is cheap. An expression
 /// is `Send` and `Sync`.
 ///
 /// Numbers are exact, see [`ExactNumber`]. What is wrong with a number or a primitive becomes an
@@ -95,6 +97,8 @@ pub struct Expression(Result<Arc<Node>, ExpressionError>);
 enum Node {
     Empty,
     Leaf(Primitive),
+    Unbounded(UnboundedPrimitive),
+    Complement(Arc<Node>),
     Operation(Operation, Vec<Arc<Node>>),
     Hull(Vec<Arc<Node>>),
     Moved(Arc<Node>, Transform),
@@ -117,10 +121,15 @@ impl Node {
         match self {
             Self::Operation(_, children) | Self::Hull(children) => children,
             Self::Moved(child, _)
+            | Self::Complement(child)
             | Self::MirroredY(child)
             | Self::Scaled(child, _)
             | Self::Stretched(child, _) => std::slice::from_ref(child),
-            Self::Empty | Self::Leaf(_) | Self::Prism(..) | Self::Described(_) => &[],
+            Self::Empty
+            | Self::Leaf(_)
+            | Self::Unbounded(_)
+            | Self::Prism(..)
+            | Self::Described(_) => &[],
         }
     }
 
@@ -128,12 +137,17 @@ impl Node {
         match self {
             Self::Operation(_, children) | Self::Hull(children) => std::mem::take(children),
             Self::Moved(child, _)
+            | Self::Complement(child)
             | Self::MirroredY(child)
             | Self::Scaled(child, _)
             | Self::Stretched(child, _) => {
                 vec![std::mem::replace(child, Arc::new(Self::Empty))]
             }
-            Self::Empty | Self::Leaf(_) | Self::Prism(..) | Self::Described(_) => Vec::new(),
+            Self::Empty
+            | Self::Leaf(_)
+            | Self::Unbounded(_)
+            | Self::Prism(..)
+            | Self::Described(_) => Vec::new(),
         }
     }
 }
@@ -188,6 +202,10 @@ fn nodes(root: &Arc<Node>) -> Vec<&Arc<Node>> {
 impl Expression {
     pub(crate) fn primitive(primitive: Result<Primitive, ExpressionError>) -> Self {
         Self(primitive.map(|primitive| Arc::new(Node::Leaf(primitive))))
+    }
+
+    fn unbounded(primitive: Result<UnboundedPrimitive, ExpressionError>) -> Self {
+        Self(primitive.map(|primitive| Arc::new(Node::Unbounded(primitive))))
     }
 
     /// A figure extruded along z, and scaled about z by the factor `top` on the way.
@@ -299,6 +317,8 @@ impl Expression {
             last = match &**node {
                 Node::Empty => SolidId::EMPTY,
                 Node::Leaf(primitive) => builder.primitive(primitive.clone()),
+                Node::Unbounded(primitive) => builder.unbounded(primitive.clone()),
+                Node::Complement(inner) => builder.complement(child(inner)),
                 Node::Operation(op, children) => {
                     let children: Vec<SolidId> = children.iter().map(child).collect();
                     builder.operation(*op, &children)
@@ -332,7 +352,8 @@ impl Expression {
     /// The tree of set operations, with every motion at its leaves.
     ///
     /// # Errors
-    /// A number, a primitive or a motion is invalid, or the tree is beyond a limit.
+    /// A number, a primitive or a motion is invalid, the part has no bound, or the tree is beyond a
+    /// limit.
     ///
     /// # Examples
     ///

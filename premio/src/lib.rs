@@ -84,8 +84,8 @@ mod write;
 pub use camera::Camera;
 pub use error::{Error, Result};
 pub use expression::{
-    Expression, ExpressionError, block, cone, cylinder, ellipsoid, frustum, oblique_frustum,
-    polyhedron, sphere, torus, wedge,
+    Expression, ExpressionError, block, cone, cylinder, ellipsoid, frustum, half_space,
+    infinite_cone, infinite_cylinder, oblique_frustum, polyhedron, sphere, torus, wedge,
 };
 pub use find::{PartFinder, PartTracker, PictureMatch};
 pub use mesh::{Fineness, TriangleMesh};

@@ -15,6 +15,7 @@ pub use crate::{
     Grey, ImageCurve, JunctionKind, Model, OffsetJoin, Operation, Paper, PartFinder, PartTracker,
     PictureMatch, Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions,
     Sketch, Solid, SolidFormat, StandardView, Strategy, Surface, TriangleMesh, Unit, ValueOverride,
-    VertexRef, View, ViewArc, block, cone, cylinder, disc, ellipsoid, frustum, oblique_frustum,
-    polygon, polyhedron, rectangle, sphere, torus, wedge,
+    VertexRef, View, ViewArc, block, cone, cylinder, disc, ellipsoid, frustum, half_space,
+    infinite_cone, infinite_cylinder, oblique_frustum, polygon, polyhedron, rectangle, sphere,
+    torus, wedge,
 };

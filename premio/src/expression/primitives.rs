@@ -3,7 +3,7 @@
 use super::{Expression, numbers};
 use crate::number::ExactNumber;
 use premio_csg::polyhedron::{Polyhedron, PolyhedronFace};
-use premio_csg::primitive::Primitive;
+use premio_csg::primitive::{Primitive, UnboundedPrimitive};
 use std::sync::Arc;
 
 /// A block with a corner at the origin and edges along the positive axes.
@@ -212,4 +212,62 @@ pub fn polyhedron<N: Into<ExactNumber>>(
         let polyhedron = Arc::new(made.polyhedron);
         Ok(Primitive::Polyhedron { polyhedron })
     }))
+}
+
+/// The half-space n · p ≤ d on one side of a plane, by its outward normal n of any length and the
+/// offset d. Other solids must bound the whole.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// // A ball cut off obliquely, at the distance 1 from its centre.
+/// let ball = sphere(3) & half_space([2, 2, 1], 3);
+/// let cap = 28.0 / 3.0 * std::f64::consts::PI;
+/// let whole = 36.0 * std::f64::consts::PI;
+/// assert!((ball.evaluate()?.volume() - (whole - cap)).abs() < 1e-9);
+/// assert!(half_space([0, 0, 1], 3).evaluate().is_err());
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn half_space<N: Into<ExactNumber>>(
+    normal: [N; 3],
+    offset: impl Into<ExactNumber>,
+) -> Expression {
+    let given = numbers(normal.map(Into::into)).and_then(|n| Ok((n, numbers([offset.into()])?)));
+    Expression::unbounded(given.and_then(|(n, [d])| Ok(UnboundedPrimitive::half_space(n, d)?)))
+}
+
+/// The points within a radius of the z axis: a cylinder without ends. Other solids must bound the
+/// whole.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let crossing = infinite_cylinder(3) & infinite_cylinder(3).rotate_x(90);
+/// assert!((crossing.evaluate()?.volume() - 144.0).abs() < 1e-9);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn infinite_cylinder(radius: impl Into<ExactNumber>) -> Expression {
+    let radius = numbers([radius.into()]);
+    Expression::unbounded(radius.and_then(|[r]| Ok(UnboundedPrimitive::cylinder(r)?)))
+}
+
+/// The nappe of a cone from its apex at the origin along +z, by its radius at the height 1. Other
+/// solids must bound the whole.
+///
+/// # Examples
+///
+/// ```
+/// use premio::prelude::*;
+///
+/// let cone = infinite_cone("0.5") & half_space([0, 0, 1], 6);
+/// assert!((cone.evaluate()?.volume() - 18.0 * std::f64::consts::PI).abs() < 1e-9);
+/// # Ok::<(), premio::Error>(())
+/// ```
+pub fn infinite_cone(slope: impl Into<ExactNumber>) -> Expression {
+    let slope = numbers([slope.into()]);
+    Expression::unbounded(slope.and_then(|[s]| Ok(UnboundedPrimitive::cone(s)?)))
 }

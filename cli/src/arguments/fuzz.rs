@@ -112,7 +112,8 @@ pub enum ProfileChoice {
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
         use Profile::{
-            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, Oblique, Parts, Rounded, Tangent, Wide,
+            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, Oblique, Parts, Rounded, Tangent,
+            Wide,
         };
         const CHOICES: [ProfileChoice; 12] = [
             ProfileChoice::All,

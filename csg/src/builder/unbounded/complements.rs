@@ -37,10 +37,9 @@ pub(super) fn rebuilt(
     mut leaf: impl FnMut(&mut Builder, &UnboundedPrimitive, usize) -> SolidId,
 ) -> (Builder, Signed) {
     let mut to = Builder::new();
-    let is_used = used(from, top);
     let mut copies: Vec<Signed> = Vec::with_capacity(top + 1);
-    for draft in 0..=top {
-        if !is_used[draft] {
+    for (draft, is_used) in used(from, top).into_iter().enumerate() {
+        if !is_used {
             copies.push(SolidId::EMPTY.into());
             continue;
         }

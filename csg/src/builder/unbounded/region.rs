@@ -8,6 +8,7 @@ use crate::primitive::UnboundedPrimitive;
 use crate::ray_casting::RayOracle;
 use crate::tree::Operation;
 use premio_kernel::number::rational::to_f64;
+use std::rc::Rc;
 
 /// A solid in space.
 #[derive(Debug, Clone)]
@@ -77,7 +78,7 @@ pub(super) enum RegionInCell {
 
 /// A step of the construction of a region.
 enum Step {
-    Enter(usize, Placement),
+    Enter(usize, Rc<Placement>),
     Combine { op: Operation, count: usize },
 }
 
@@ -88,13 +89,13 @@ impl Region {
     /// The tree exceeds a limit.
     pub fn new(builder: &Builder, top: usize) -> Result<Self, TreeError> {
         let mut region = Self::default();
-        let mut steps = vec![Step::Enter(top, Placement::default())];
+        let mut steps = vec![Step::Enter(top, Rc::default())];
         let mut done: Vec<usize> = Vec::new();
         while let Some(step) = steps.pop() {
             match step {
                 Step::Enter(draft, placement) if !builder.open[draft] => {
                     let mut expansion = Expansion::new(builder);
-                    expansion.run(draft, placement)?;
+                    expansion.run(draft, Rc::unwrap_or_clone(placement))?;
                     let bounds = *RayOracle::new(&expansion.tree).bounds();
                     let is_empty = (0..3).any(|i| bounds.min[i] > bounds.max[i]);
                     let shape = match is_empty {
@@ -111,14 +112,14 @@ impl Region {
                     BuilderNode::Operation { op, children } => {
                         let count = children.len();
                         steps.push(Step::Combine { op: *op, count });
-                        let enter = |&child: &usize| Step::Enter(child, placement.clone());
+                        let enter = |&child: &usize| Step::Enter(child, Rc::clone(&placement));
                         steps.extend(children.iter().rev().map(enter));
                     }
                     BuilderNode::Moved {
                         child,
                         placement: inner,
                         ..
-                    } => steps.push(Step::Enter(*child, inner.then(&placement))),
+                    } => steps.push(Step::Enter(*child, Rc::new(inner.then(&placement)))),
                     BuilderNode::Leaf(_) | BuilderNode::Open(OpenNode::Complement(_)) => {}
                 },
                 Step::Combine { op, count } => {

@@ -3,7 +3,7 @@
 use super::clipping::Ball;
 use super::form::{Cell, LinearForm, square};
 use crate::builder::expansion::Expansion;
-use crate::builder::{Builder, BuilderNode, OpenNode, Placement, TreeError};
+use crate::builder::{Builder, BuilderNode, MAX_MOTION_BITS, OpenNode, Placement, TreeError};
 use crate::primitive::UnboundedPrimitive;
 use crate::ray_casting::RayOracle;
 use crate::tree::Operation;
@@ -82,6 +82,32 @@ enum Step {
     Combine { op: Operation, count: usize },
 }
 
+/// One placement after another.
+fn moved(inner: &Placement, outer: &Placement) -> Result<Rc<Placement>, TreeError> {
+    let both = inner.then(outer);
+    let bits = both.bits();
+    match bits > MAX_MOTION_BITS {
+        true => Err(TreeError::NumbersTooLong { bits }),
+        false => Ok(Rc::new(both)),
+    }
+}
+
+/// The box of a draft without unbounded solids.
+fn bounded_shape(
+    builder: &Builder,
+    draft: usize,
+    placement: Placement,
+) -> Result<Shape, TreeError> {
+    let mut expansion = Expansion::new(builder);
+    expansion.run(draft, placement)?;
+    let bounds = RayOracle::new(&expansion.tree).bounds().to_owned();
+    let is_empty = (0..3).any(|i| bounds.min[i] > bounds.max[i]);
+    Ok(match is_empty {
+        true => Shape::Nothing,
+        false => Shape::Bounded([bounds.min, bounds.max]),
+    })
+}
+
 impl Region {
     /// The region of a draft without complements.
     ///
@@ -94,14 +120,7 @@ impl Region {
         while let Some(step) = steps.pop() {
             match step {
                 Step::Enter(draft, placement) if !builder.open[draft] => {
-                    let mut expansion = Expansion::new(builder);
-                    expansion.run(draft, Rc::unwrap_or_clone(placement))?;
-                    let bounds = *RayOracle::new(&expansion.tree).bounds();
-                    let is_empty = (0..3).any(|i| bounds.min[i] > bounds.max[i]);
-                    let shape = match is_empty {
-                        true => Shape::Nothing,
-                        false => Shape::Bounded([bounds.min, bounds.max]),
-                    };
+                    let shape = bounded_shape(builder, draft, Rc::unwrap_or_clone(placement))?;
                     done.push(region.add(RegionNode::Leaf(shape)));
                 }
                 Step::Enter(draft, placement) => match builder.draft(draft) {
@@ -119,7 +138,7 @@ impl Region {
                         child,
                         placement: inner,
                         ..
-                    } => steps.push(Step::Enter(*child, Rc::new(inner.then(&placement)))),
+                    } => steps.push(Step::Enter(*child, moved(inner, &placement)?)),
                     BuilderNode::Leaf(_) | BuilderNode::Open(OpenNode::Complement(_)) => {}
                 },
                 Step::Combine { op, count } => {

@@ -11,6 +11,7 @@ use std::fmt;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use premio_kernel::colour::Colour;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::{Rational, bits};
 
@@ -211,6 +212,10 @@ pub struct Builder {
     foreign: Vec<bool>,
     /// Whether each draft contains a solid without a bound.
     open: Vec<bool>,
+    /// The colour of each primitive.
+    colours: Vec<Option<Colour>>,
+    /// The colour of new primitives.
+    brush: Option<Colour>,
     entries: Vec<Entry>,
 }
 
@@ -225,6 +230,8 @@ impl Default for Builder {
             leaves: Vec::new(),
             foreign: Vec::new(),
             open: Vec::new(),
+            colours: Vec::new(),
+            brush: None,
             entries: Vec::new(),
         }
     }
@@ -244,6 +251,7 @@ impl Builder {
         self.leaves.push(leaves);
         self.foreign.push(foreign);
         self.open.push(open);
+        self.colours.push(self.brush);
         self.solid(self.drafts.len() - 1)
     }
 
@@ -265,6 +273,7 @@ impl Builder {
         self.leaves.push(0);
         self.foreign.push(true);
         self.open.push(false);
+        self.colours.push(None);
         Some(self.drafts.len() - 1)
     }
 
@@ -317,7 +326,18 @@ impl Builder {
         self.leaves.extend(&other.leaves);
         self.foreign.extend(&other.foreign);
         self.open.extend(&other.open);
+        self.colours.extend(&other.colours);
         Ok(self.solid(slot.index + drafts))
+    }
+
+    /// Sets the colour of primitives that are added from now on; gives the one until now.
+    pub fn set_colour(&mut self, colour: Option<Colour>) -> Option<Colour> {
+        std::mem::replace(&mut self.brush, colour)
+    }
+
+    /// The colour of new primitives.
+    pub(crate) fn brush(&self) -> Option<Colour> {
+        self.brush
     }
 
     /// A primitive in its own frame.

@@ -1,7 +1,9 @@
 //! The tree of set operations, with every motion at its leaves.
 
+use std::collections::BTreeMap;
 use std::ops::Index;
 
+use premio_kernel::colour::Colour;
 use premio_kernel::motion::Motion;
 use premio_kernel::number::rational::to_f64;
 
@@ -98,6 +100,8 @@ pub enum TreeNode {
 pub struct Tree {
     pub(crate) nodes: Vec<TreeNode>,
     pub(crate) root: Option<NodeId>,
+    /// The colours of leaves that have one.
+    pub(crate) colours: BTreeMap<NodeId, Colour>,
 }
 
 impl Tree {
@@ -109,6 +113,11 @@ impl Tree {
     /// All nodes, a parent before its children.
     pub fn nodes(&self) -> &[TreeNode] {
         &self.nodes
+    }
+
+    /// The colour of a primitive, if it has one.
+    pub fn colour(&self, leaf: NodeId) -> Option<Colour> {
+        self.colours.get(&leaf).copied()
     }
 
     /// Whether this is the empty solid.
@@ -135,9 +144,12 @@ impl Tree {
                 children: children.iter().map(new_id).collect(),
             },
         };
+        let colours = self.colours.iter();
+        let kept_colours = colours.filter(|(leaf, _)| is_below[leaf.0]);
         Self {
             nodes: kept.iter().map(copy).collect(),
             root: Some(NodeId(0)),
+            colours: kept_colours.map(|(leaf, c)| (new_id(leaf), *c)).collect(),
         }
     }
 

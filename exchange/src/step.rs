@@ -7,6 +7,7 @@
 //! protocol with boundary representations has.
 
 mod clearance;
+mod colours;
 mod overlap;
 mod part21;
 mod product;
@@ -14,6 +15,7 @@ mod shape;
 mod spline_surface;
 mod thin;
 
+use crate::FaceColours;
 use crate::spline::SplineError;
 use crate::two_manifold::{SeamError, TwoManifold};
 use part21::Exchange;
@@ -44,6 +46,8 @@ pub struct StepOptions {
     pub accuracy: f64,
     /// The part's resolution.
     pub resolution: f64,
+    /// The colours of faces.
+    pub colours: FaceColours,
 }
 
 /// Why a boundary cannot be written.
@@ -105,6 +109,8 @@ pub fn write(brep: &Brep, options: &StepOptions) -> Result<String, StepError> {
     let context = product::context(&mut exchange, options);
     let mut shape = shape::Shape::new(&mut exchange, &seamed, options.accuracy / NEARER);
     let solids = shape.solids()?;
+    let faces = shape.take_faces();
+    colours::styles(&mut exchange, &options.colours, context, &faces);
     product::product(&mut exchange, options, context, &solids);
     Ok(exchange.finish(options))
 }

@@ -6,6 +6,7 @@ use gltf::{Glb, Gltf};
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
+use premio_exchange::FaceColours;
 use premio_exchange::mesh::{Facets, MeshError, glb, obj, stl};
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::tessellation::Accuracy;
@@ -167,7 +168,7 @@ fn stl_is_read_back() {
 fn gltf_is_read_back() {
     let part = part("A = BLO(X=10, Y=20, Z=40) AT (MOVX=1000, MOVY=2000, MOVZ=4000)");
     let facets = facets(&part, 0.1).unwrap();
-    let bytes = glb::write(&facets, "block", Unit::Centimetre).unwrap();
+    let bytes = glb::write(&facets, &FaceColours::default(), "block", Unit::Centimetre).unwrap();
     let file = Glb::from_slice(&bytes).unwrap();
     let bin = file.bin.as_deref().unwrap();
     let gltf = Gltf::from_slice(&bytes).unwrap();
@@ -224,7 +225,7 @@ fn single_precision_is_refused_far_from_the_origin() {
         other => panic!("{other}"),
     };
     assert!((place[0] - 1e8).abs() <= 1.0);
-    assert!(glb::write(&facets, "far", Unit::Metre).is_ok());
+    assert!(glb::write(&facets, &FaceColours::default(), "far", Unit::Metre).is_ok());
 }
 
 /// The lune between two balls is at most 3e-8 thick, less than the spacing of f32 at their radius,

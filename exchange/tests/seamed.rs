@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
+use premio_exchange::FaceColours;
 use premio_exchange::step;
 use premio_exchange::two_manifold::{HalfEdge, SeamError, TwoManifold};
 use premio_kernel::brep::topology::Sense;
@@ -201,6 +202,7 @@ fn a_seam_has_no_splines() {
         unit: Unit::Inch,
         accuracy: 1e-6,
         resolution: known.resolution,
+        colours: FaceColours::default(),
     };
     let file = step::write(&known.brep, &options).unwrap();
     assert!(
@@ -225,6 +227,7 @@ fn arcs_start_far_from_where_their_parameter_does() {
         unit: Unit::Millimetre,
         accuracy: 1e-6,
         resolution: known.resolution,
+        colours: FaceColours::default(),
     };
     let file = step::write(&known.brep, &options).unwrap();
     let instance = |id: &str| {
@@ -273,6 +276,7 @@ fn every_instance_of_a_file_is_written_before_it_is_named() {
             unit: Unit::Millimetre,
             accuracy: 1e-6,
             resolution: known.resolution,
+            colours: FaceColours::default(),
         };
         let file = step::write(&known.brep, &options).unwrap();
         let data = file.split("DATA;\n").nth(1).unwrap();

@@ -4,6 +4,7 @@
 use approx::assert_relative_eq;
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions as Reading, read};
+use premio_exchange::FaceColours;
 use premio_exchange::SplineError;
 use premio_exchange::step::{ACCURACY, Protocol, StepError, StepOptions, Thin, write};
 use premio_kernel::unit::Unit;
@@ -17,6 +18,7 @@ fn written(text: &str, unit: Unit) -> Result<String, StepError> {
         unit,
         accuracy: ACCURACY * evaluation.bounds.diagonal(),
         resolution: evaluation.resolution,
+        colours: FaceColours::default(),
     };
     write(&evaluation.brep, &options)
 }

@@ -4,7 +4,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use premio_csg::reader::{
-    FacetLimit, Format, IncludeError, IncludeLoader, IncludePath, Includes, Program, ReadOptions, parse, read,
+    FacetLimit, Format, IncludeError, IncludeLoader, IncludePath, Includes, Program, ReadOptions,
+    parse, read,
 };
 use premio_csg::writer::{WriteError, write};
 
@@ -34,7 +35,10 @@ fuzz_target!(|bytes: &[u8]| {
 
 /// The text without included files describes the same part.
 fn alone(source: &Program) {
-    let (Some(text), Ok(tree)) = (source.standalone.rewritten(), source.builder.finish(source.part)) else {
+    let (Some(text), Ok(tree)) = (
+        source.standalone.rewritten(),
+        source.builder.finish(source.part),
+    ) else {
         return;
     };
     let options = ReadOptions::default();

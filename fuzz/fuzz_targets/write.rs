@@ -6,6 +6,7 @@ use libfuzzer_sys::fuzz_target;
 use premio_csg::object_model::ObjectModel;
 use premio_drawing::sheet::{self, Sheet, SheetView, StandardView};
 use premio_drawing::{Drawing, dxf, svg};
+use premio_exchange::FaceColours;
 use premio_exchange::mesh::{Facets, glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_fuzz::{Part, Recipe, Sight};
@@ -44,6 +45,7 @@ fn boundary(part: &Part, name: &str) {
         unit: Unit::Millimetre,
         accuracy: 1e-6 * size,
         resolution: known.f64_resolution(),
+        colours: FaceColours::default(),
     };
     if let Ok(text) = step::write(&known.brep, &how) {
         exchange(&text);
@@ -92,12 +94,12 @@ fn meshes(part: &Part, name: &str) {
         let read = stl_io::read_stl(&mut Cursor::new(&bytes)).expect("it is STL");
         assert!(read.faces.len() <= count, "{}", part.text);
     }
-    if let Ok(bytes) = glb::write(&facets, name, Unit::Millimetre) {
+    if let Ok(bytes) = glb::write(&facets, &FaceColours::default(), name, Unit::Millimetre) {
         let read = gltf::Gltf::from_slice(&bytes).expect("it is glTF");
         let node = read.nodes().next().expect("there is a node");
         assert_eq!(node.name(), Some(name));
     }
-    if let Ok(bytes) = threemf::write(&facets, name, Unit::Millimetre) {
+    if let Ok(bytes) = threemf::write(&facets, &FaceColours::default(), name, Unit::Millimetre) {
         package(&bytes, count);
     }
     wavefront(&obj::write(&facets, name), count);

@@ -2,6 +2,7 @@
 //! boundary representation built from them.
 
 pub mod brep;
+pub mod colour;
 pub mod geometry;
 pub mod motion;
 pub mod number;

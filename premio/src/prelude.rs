@@ -10,7 +10,7 @@
 //! ```
 
 pub use crate::{
-    Camera, CameraFile, CancelToken, ContourKind, Curve, Detector, Drawing, DrawingOptions,
+    Camera, CameraFile, CancelToken, Colour, ContourKind, Curve, Detector, Drawing, DrawingOptions,
     EdgeRef, EvaluationOptions, ExactNumber, ExportSettings, Expression, FaceRef, Fineness, Format,
     Grey, ImageCurve, JunctionKind, Model, OffsetJoin, Operation, Paper, PartFinder, PartTracker,
     PictureMatch, Progress, Rational, ReadOptions, SearchOptions, Setup, Setups, SheetOptions,

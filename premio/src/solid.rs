@@ -4,13 +4,14 @@ use crate::check::checked;
 use crate::topology::{EdgeRef, FaceRef, VertexRef};
 use crate::{Camera, Error, Expression, Result, View};
 use nalgebra::Point3;
-use premio_csg::evaluate::{Evaluation, EvaluationOptions};
+use premio_csg::evaluate::{Evaluation, EvaluationOptions, face_colours};
 use premio_csg::object_model::ObjectModel;
 use premio_csg::recover::Recovery;
 use premio_csg::tree::Tree;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::point_in_solid::contains;
 use premio_kernel::brep::topology::VertexId;
+use premio_kernel::colour::Colour;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::{CloseCall, CoincidencePolicy, DecisionStats};
 use premio_predict::model::record::DescriptionRecord;
@@ -382,6 +383,24 @@ impl Solid {
     /// ```
     pub fn evaluation(&self) -> &Evaluation {
         &self.0.evaluation
+    }
+
+    /// The colour of every face, in the order of the faces, as an OpenSCAD file gives it; empty if no
+    /// primitive has a colour. STEP, glTF and 3MF files have them.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use premio::prelude::*;
+    ///
+    /// let text = "union() { color([1, 0, 0, 1]) { cube(size = 2); } sphere(r = 1); }";
+    /// let solid = premio::read_text(text, Format::Csg)?.evaluate()?;
+    /// let red = solid.face_colours().iter().flatten().count();
+    /// assert_eq!((red, solid.faces().count()), (6, 7));
+    /// # Ok::<(), premio::Error>(())
+    /// ```
+    pub fn face_colours(&self) -> Vec<Option<Colour>> {
+        face_colours(&self.0.tree, &self.0.evaluation)
     }
 
     /// The tree that was evaluated.

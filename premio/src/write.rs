@@ -3,6 +3,7 @@
 use crate::{Error, Fineness, Result, Solid};
 use premio_drawing::sheet::Sheet;
 use premio_drawing::{dxf, svg};
+use premio_exchange::FaceColours;
 use premio_exchange::mesh::{glb, obj, stl, threemf};
 use premio_exchange::step::{self, Protocol};
 use premio_kernel::unit::Unit;
@@ -143,6 +144,7 @@ impl Solid {
                 .accuracy
                 .unwrap_or(step::ACCURACY * self.extent().size),
             resolution: self.evaluation().f64_resolution(),
+            colours: FaceColours(self.face_colours()),
         };
         Ok(step::write(self.brep(), &options)?)
     }
@@ -165,13 +167,14 @@ impl Solid {
     pub fn to_bytes(&self, format: SolidFormat, settings: &ExportSettings) -> Result<Vec<u8>> {
         let facets = || self.facets(&settings.fineness);
         let (name, unit) = (&settings.name, settings.unit);
+        let colours = || FaceColours(self.face_colours());
         Ok(match format {
             SolidFormat::Step => self.to_step(settings)?.into_bytes(),
             SolidFormat::Json => (self.to_json()? + "\n").into_bytes(),
             SolidFormat::Stl => stl::write(&facets()?)?,
             SolidFormat::Obj => obj::write(&facets()?, name).into_bytes(),
-            SolidFormat::Glb => glb::write(&facets()?, name, unit)?,
-            SolidFormat::ThreeMf => threemf::write(&facets()?, name, unit)?,
+            SolidFormat::Glb => glb::write(&facets()?, &colours(), name, unit)?,
+            SolidFormat::ThreeMf => threemf::write(&facets()?, &colours(), name, unit)?,
         })
     }
 

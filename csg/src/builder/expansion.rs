@@ -43,7 +43,12 @@ impl<'a> Expansion<'a> {
 
     fn expand(&mut self, task: Task) -> Result<(), TreeError> {
         match &self.builder.drafts[task.draft] {
-            BuilderNode::Leaf(primitive) => self.expand_leaf(primitive, &task),
+            BuilderNode::Leaf(primitive) => {
+                let leaf = self.expand_leaf(primitive, &task);
+                if let Some(colour) = self.builder.colours[task.draft] {
+                    self.tree.colours.insert(leaf, colour);
+                }
+            }
             BuilderNode::Open(_) => return Err(TreeError::Unbounded(UnboundedSide::Everywhere)),
             BuilderNode::Operation { op, children } => self.expand_operation(*op, children, &task),
             BuilderNode::Moved {
@@ -64,7 +69,7 @@ impl<'a> Expansion<'a> {
         Ok(())
     }
 
-    fn expand_leaf(&mut self, primitive: &Primitive, task: &Task) {
+    fn expand_leaf(&mut self, primitive: &Primitive, task: &Task) -> NodeId {
         let Placement {
             motion,
             mirrored,
@@ -83,7 +88,7 @@ impl<'a> Expansion<'a> {
         self.attach(
             TreeNode::Leaf(PlacedPrimitive { primitive, motion }),
             task.parent,
-        );
+        )
     }
 
     fn expand_operation(&mut self, op: Operation, children: &[usize], task: &Task) {

@@ -14,7 +14,7 @@ use crate::figure::PlaneMap;
 use crate::polyhedron::{SpacePoint, dot};
 use crate::primitive::Primitive;
 use crate::transform::Transform;
-use crate::tree::{PlacedPrimitive, TreeNode};
+use crate::tree::{NodeId, PlacedPrimitive, TreeNode};
 
 /// The image of a solid under an affine map.
 ///
@@ -34,7 +34,13 @@ pub fn mapped(
     // Children follow their parents.
     for (index, node) in tree.nodes().iter().enumerate().rev() {
         images[index] = match node {
-            TreeNode::Leaf(placed) => of_leaf(builder, placed, map)?,
+            TreeNode::Leaf(placed) => {
+                let around = builder.brush();
+                builder.set_colour(around.or(tree.colour(NodeId(index))));
+                let image = of_leaf(builder, placed, map);
+                builder.set_colour(around);
+                image?
+            }
             TreeNode::Operation { op, children } => {
                 let children: Vec<SolidId> = children.iter().map(|c| images[c.index()]).collect();
                 builder.operation(*op, &children)

@@ -37,6 +37,7 @@
 //! | `relevance` | the close calls on which the boundary depends |
 //! | `face_verification` | every face checked against the tree |
 //! | `evaluation` | the result |
+//! | `face_colours` | the colours of its faces, by the primitives on which they lie |
 //!
 //! The kernel assembles edges to loops, faces, shells and solids.
 
@@ -54,6 +55,7 @@ mod error;
 mod escalation;
 mod evaluation;
 mod exact_coefficients;
+mod face_colours;
 mod face_hulls;
 mod face_verification;
 mod facet_joints;
@@ -80,6 +82,7 @@ mod walls;
 
 pub use error::EvaluationError;
 pub use evaluation::Evaluation;
+pub use face_colours::face_colours;
 
 use self::arrangement::Arrangement;
 use self::carrier_intersections::Arranged;

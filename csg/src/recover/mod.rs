@@ -23,7 +23,7 @@ mod tests;
 
 use crate::builder::{Builder, SolidId};
 use crate::transform::{Transform, TransformStep};
-use crate::tree::{Tree, TreeNode};
+use crate::tree::{NodeId, Tree, TreeNode};
 use placement::Placement;
 use premio_kernel::motion::{Motion, MotionError};
 use rounding::Rounding;
@@ -115,6 +115,7 @@ impl Recovery {
                     Some(transform) => transform.clone(),
                     None => steps(&placed.motion)?,
                 };
+                builder.set_colour(self.tree.colour(NodeId(k)));
                 let primitive = builder.primitive(placed.primitive.clone());
                 solids[k] = builder.moved(primitive, transform);
             }

@@ -1,18 +1,21 @@
-//! Binary glTF 2.0: triangles with the surfaces' normals, and the edges as lines.
+//! Binary glTF 2.0: triangles with the surfaces' normals and the faces' colours, and the edges as
+//! lines.
 //!
 //! Coordinates are in single precision, relative to the part's centre. The node above translates
 //! them to their position and converts to metres and y up, as the format requires.
 
 use super::f32_points::{F32Points, rounded};
-use super::{Facets, MeshError};
+use super::{Facet, Facets, MeshError};
+use crate::FaceColours;
 use gltf::binary::{Glb, Header};
 use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf::json::buffer::{Buffer, Target, View};
-use gltf::json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
+use gltf::json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{Accessor, Asset, Extras, Index, Material, Mesh, Node, Root, Scene, serialize};
 use nalgebra::Point3;
+use premio_kernel::colour::Colour;
 use premio_kernel::unit::Unit;
 use premio_text::escape;
 use std::collections::{BTreeMap, HashMap};
@@ -28,12 +31,16 @@ const ROUGH: f32 = 0.6;
 ///
 /// # Errors
 /// Points are too close for f32, or there are too many triangles.
-pub fn write(facets: &Facets, name: &str, unit: Unit) -> Result<Vec<u8>, MeshError> {
+pub fn write(
+    facets: &Facets,
+    colours: &FaceColours,
+    name: &str,
+    unit: Unit,
+) -> Result<Vec<u8>, MeshError> {
     let centre = centre(&facets.points);
     let single = F32Points::new(facets, &centre)?;
     let mut file = File::default();
-    let faces = file.faces(&single);
-    let mut primitives = vec![faces];
+    let mut primitives = file.all_faces(&single, colours);
     if !facets.lines.is_empty() {
         primitives.push(file.edges(&facets.lines, &centre));
     }
@@ -97,11 +104,36 @@ struct File {
 }
 
 impl File {
-    /// The triangles. A corner occurs once for each of its normals.
-    fn faces(&mut self, single: &F32Points) -> Primitive {
+    /// The triangles: those of faces without a colour, and then those of each colour.
+    fn all_faces(&mut self, single: &F32Points, colours: &FaceColours) -> Vec<Primitive> {
+        let mut by_colour: BTreeMap<Option<Colour>, Vec<&Facet>> = BTreeMap::new();
+        for facet in &single.facets {
+            let colour = colours.of(facet.face);
+            by_colour.entry(colour).or_default().push(facet);
+        }
+        let one = |(colour, facets): (Option<Colour>, Vec<&Facet>)| {
+            let material = match colour {
+                Some(colour) => {
+                    let parts = colour.linear().map(|part| part as f32);
+                    self.material(&colour.to_string(), parts)
+                }
+                None => self.material("faces", FACES),
+            };
+            self.faces(single, &facets, material)
+        };
+        by_colour.into_iter().map(one).collect()
+    }
+
+    /// Triangles. A corner occurs once for each of its normals.
+    fn faces(
+        &mut self,
+        single: &F32Points,
+        facets: &[&Facet],
+        material: Index<Material>,
+    ) -> Primitive {
         let mut place: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
         let (mut points, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-        for facet in &single.facets {
+        for facet in facets {
             for (&corner, normal) in facet.corners.iter().zip(&facet.normals) {
                 let normal: [f32; 3] = normal.map(|x| x as f32).into();
                 let key = (corner, normal.map(f32::to_bits));
@@ -116,7 +148,6 @@ impl File {
             (Semantic::Positions, self.vectors(&points)),
             (Semantic::Normals, self.vectors(&normals)),
         ];
-        let material = self.material("faces", FACES);
         self.primitive(Mode::Triangles, &attributes, &indices, material)
     }
 
@@ -161,6 +192,10 @@ impl File {
     fn material(&mut self, name: &str, colour: [f32; 4]) -> Index<Material> {
         self.root.push(Material {
             name: Some(name.to_owned()),
+            alpha_mode: Checked::Valid(match colour[3] < 1.0 {
+                true => AlphaMode::Blend,
+                false => AlphaMode::Opaque,
+            }),
             pbr_metallic_roughness: PbrMetallicRoughness {
                 base_color_factor: PbrBaseColorFactor(colour),
                 metallic_factor: StrengthFactor(0.0),

@@ -6,7 +6,7 @@ use crate::parameters::ParameterWindow;
 use crate::spline::{BezierSegments, DEGREE, Follow, Pace, Spline};
 use crate::two_manifold::{SeamedEdge, SeamedFace, TwoManifold};
 use nalgebra::{Point3, Vector3};
-use premio_kernel::brep::topology::Sense;
+use premio_kernel::brep::topology::{FaceId, Sense};
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Cone, Surface, Torus};
@@ -22,6 +22,8 @@ pub(super) struct Shape<'s, 'e> {
     vertices: Vec<Option<Id>>,
     edges: Vec<Option<Id>>,
     surfaces: Vec<Placed>,
+    /// The faces written so far, with those of the boundary.
+    faces: Vec<WrittenFace>,
     /// The faces on both sides of each edge.
     sides: Vec<Vec<usize>>,
 }
@@ -33,6 +35,14 @@ struct Placed {
     /// The value of the second parameter from which the file measures it: for a cone a height above
     /// the apex, for a torus that reaches its axis the lower pole.
     level: f64,
+}
+
+/// A face in the file.
+#[derive(Clone, Copy)]
+pub(super) struct WrittenFace {
+    pub id: Id,
+    /// The face of the boundary that contains it.
+    pub source: FaceId,
 }
 
 impl<'s, 'e> Shape<'s, 'e> {
@@ -51,6 +61,7 @@ impl<'s, 'e> Shape<'s, 'e> {
             vertices: vec![None; seamed.points.len()],
             edges: vec![None; seamed.edges.len()],
             surfaces: Vec::new(),
+            faces: Vec::new(),
             sides,
         }
     }
@@ -115,10 +126,18 @@ impl<'s, 'e> Shape<'s, 'e> {
         }
         let surface = self.surfaces[index].id;
         let along = Truth(face.sense == Sense::Along);
-        Ok(self.exchange.add(format_args!(
+        let id = self.exchange.add(format_args!(
             "ADVANCED_FACE('',{},{surface},{along})",
             List(&bounds)
-        )))
+        ));
+        let source = face.source;
+        self.faces.push(WrittenFace { id, source });
+        Ok(id)
+    }
+
+    /// The faces written so far.
+    pub fn take_faces(&mut self) -> Vec<WrittenFace> {
+        std::mem::take(&mut self.faces)
     }
 
     fn edge(&mut self, index: usize) -> Result<Id, StepError> {

@@ -16,6 +16,7 @@ mod surface;
 mod walk;
 
 use super::{Check, CheckSubject, Checker, Finding};
+use premio_exchange::FaceColours;
 use premio_exchange::step::{self, Protocol, StepOptions};
 use premio_kernel::unit::Unit;
 use rules::{Known, Measured};
@@ -43,6 +44,7 @@ impl Checker<'_> {
             unit: Unit::default(),
             accuracy: step::ACCURACY * self.bounds.diagonal(),
             resolution: evaluation.f64_resolution(),
+            colours: FaceColours::default(),
         };
         let text = match step::write(&evaluation.brep, &options) {
             Ok(text) => text,
@@ -136,6 +138,7 @@ mod tests {
             unit: Unit::default(),
             accuracy: ACCURACY,
             resolution: evaluation.resolution,
+            colours: FaceColours::default(),
         };
         let mass = evaluation.mass();
         let known = Known {

@@ -43,6 +43,7 @@ pub(super) fn rebuilt(
             copies.push(SolidId::EMPTY.into());
             continue;
         }
+        to.set_colour(from.colours[draft]);
         let copy = match from.draft(draft) {
             BuilderNode::Leaf(primitive) => to.primitive(primitive.clone()).into(),
             BuilderNode::Open(OpenNode::Leaf(primitive)) => leaf(&mut to, primitive, draft).into(),

@@ -168,6 +168,11 @@ impl Arguments {
         Ok(())
     }
 
+    /// The first argument.
+    pub(super) fn first(&self) -> Option<&Argument> {
+        self.arguments.first()
+    }
+
     /// An argument by its name; `undef` counts as absent.
     pub(super) fn find(&self, name: &str) -> Option<&Argument> {
         self.arguments.iter().find(|argument| {

@@ -18,6 +18,7 @@
 //! | `nodes` | the meaning of every node |
 
 mod arguments;
+mod colour;
 mod facets;
 mod figures;
 mod import;

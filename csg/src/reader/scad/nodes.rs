@@ -14,6 +14,7 @@ use super::super::region::{Region, bad_figure};
 use super::super::sweep::operation;
 use super::SIX_DIGITS;
 use super::arguments::Arguments;
+use super::colour::colours;
 use super::facets::FacetRule;
 use super::figures;
 use super::import::{self, ImportFormat, ImportedFiles};
@@ -109,9 +110,10 @@ impl<'c, 'a> Evaluator<'c, 'a> {
     pub fn solid(&mut self, file: ScadFile) -> Result<SolidId, SpannedError> {
         let ScadFile { nodes, top } = file;
         let names: Vec<Lexeme> = nodes.iter().map(|node| node.name).collect();
+        let colours = colours(&nodes, self.cursor);
         let mut made: Vec<Option<Geometry>> = Vec::with_capacity(nodes.len());
         let mut root: Option<Geometry> = None;
-        for mut node in nodes {
+        for (mut node, colour) in nodes.into_iter().zip(colours) {
             if !node.is_live {
                 made.push(None);
                 continue;
@@ -126,6 +128,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 names: live.iter().map(|&c| names[c]).collect(),
                 each: live.into_iter().filter_map(|c| made[c].take()).collect(),
             };
+            self.builder.set_colour(colour);
             let geometry = self.geometry(&mut node, children)?;
             match node.is_root {
                 true => {
@@ -135,6 +138,7 @@ impl<'c, 'a> Evaluator<'c, 'a> {
                 false => made.push(Some(geometry)),
             }
         }
+        self.builder.set_colour(None);
         if let Some(root) = root {
             return self.as_solid(root);
         }

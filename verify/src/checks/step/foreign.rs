@@ -248,6 +248,7 @@ mod tests {
     use super::*;
     use crate::generator::write::{Format, read};
     use premio_csg::evaluate::{EvaluationOptions, evaluate};
+    use premio_exchange::FaceColours;
     use premio_exchange::step::{self, Protocol, StepOptions};
     use premio_kernel::unit::Unit;
 
@@ -261,6 +262,7 @@ mod tests {
             unit: Unit::default(),
             accuracy: 1e-6,
             resolution: evaluation.resolution,
+            colours: FaceColours::default(),
         };
         let mass = evaluation.mass();
         let text = step::write(&evaluation.brep, &options).unwrap();

@@ -1,0 +1,136 @@
+//! The colours of faces: each has that of the primitive on whose boundary it lies.
+
+use super::evaluation::Evaluation;
+use super::halfspaces::{HalfSpaceModel, Solid};
+use crate::tree::{NodeId, Tree};
+use nalgebra::{Point3, Vector3};
+use premio_kernel::brep::Brep;
+use premio_kernel::brep::locate::FaceLocator;
+use premio_kernel::brep::topology::FaceId;
+use premio_kernel::colour::Colour;
+use premio_kernel::geometry::frame::Frame;
+use premio_kernel::geometry::surface::Surface;
+
+/// The distance within which a point lies on a primitive, in multiples of the resolution.
+const NEAR: f64 = 16.0;
+
+/// The colour of every face of the boundary of a tree, in the order of the faces; empty if no primitive
+/// has a colour.
+///
+/// A face of a difference has the colour of what was taken away. Where faces of primitives coincide, it
+/// is that of the first primitive with the material of the face.
+pub fn face_colours(tree: &Tree, evaluation: &Evaluation) -> Vec<Option<Colour>> {
+    if tree.colours.is_empty() {
+        return Vec::new();
+    }
+    let brep = &evaluation.brep;
+    let solids = HalfSpaceModel::<f64>::new(tree).all;
+    let distance = NEAR * evaluation.f64_resolution();
+    let faces = brep.topology.face_ids();
+    let sources = faces.map(|face| source(brep, face, &solids, distance));
+    sources.map(|leaf| tree.colour(leaf?)).collect()
+}
+
+/// The primitive on whose boundary a face lies.
+fn source(brep: &Brep, face: FaceId, solids: &[Solid<f64>], distance: f64) -> Option<NodeId> {
+    let locator = FaceLocator::from_face(brep, face, distance / NEAR);
+    let surface = brep.surface(face);
+    let point = locator
+        .interior(2.0 * distance)
+        .unwrap_or_else(|| point_of_closed(surface));
+    let normal = surface.normal(&point) * brep.sense(face).sign::<f64>();
+    let around = solids.iter().filter(|solid| {
+        let bounds = solid.bounds.grown(distance);
+        bounds.contains(&point)
+    });
+    let on = around.filter_map(|solid| {
+        let level = |at: &Point3<f64>| solid.level(at, 4.0 * distance);
+        let [below, above] = [-1.0, 1.0].map(|side| level(&(point + normal * (side * distance))));
+        (level(&point).abs() <= distance).then_some((solid.leaf, below < above))
+    });
+    let on: Vec<(NodeId, bool)> = on.collect();
+    let first = on.iter().find(|(_, has_material)| *has_material);
+    first.or(on.first()).map(|(leaf, _)| *leaf)
+}
+
+/// A point of a face that is all of a closed surface.
+fn point_of_closed(surface: &Surface) -> Point3<f64> {
+    let frame: &Frame = surface.frame();
+    let along = Vector3::new(2.0, -3.0, 6.0) / 7.0;
+    match surface {
+        Surface::Sphere(s) => frame.origin + frame.vector(&along) * s.radius,
+        Surface::Ellipsoid(s) => frame.origin + frame.vector(&s.image(&along)),
+        Surface::Torus(s) => frame.origin + frame.x * (s.major + s.minor),
+        _ => frame.origin,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by it")]
+mod tests {
+    use super::face_colours;
+    use crate::evaluate::{EvaluationOptions, evaluate};
+    use crate::reader::{Format, ReadOptions, read};
+    use std::collections::BTreeMap;
+
+    /// The number of faces of each colour.
+    fn count(text: &str) -> BTreeMap<String, usize> {
+        let options = ReadOptions::default();
+        let tree = read("part.csg", text.as_bytes(), Format::Csg, &options);
+        let tree = tree.unwrap().tree;
+        let evaluation = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+        let mut count = BTreeMap::new();
+        for colour in face_colours(&tree, &evaluation) {
+            let name = colour.map_or("none".to_owned(), |colour| colour.to_string());
+            *count.entry(name).or_default() += 1;
+        }
+        count
+    }
+
+    fn is(text: &str, expected: &[(&str, usize)]) {
+        let expected = expected.iter().map(|(name, n)| ((*name).to_owned(), *n));
+        assert_eq!(count(text), expected.collect(), "{text}");
+    }
+
+    const RED: &str = "color([1, 0, 0, 1])";
+    const BLUE: &str = "color([0, 0, 1, 1])";
+
+    #[test]
+    fn faces_have_the_colours_of_their_primitives() {
+        is("cube(size = 2);", &[]);
+        is(&format!("{RED} {{ cube(size = 2); }}"), &[("#FF0000FF", 6)]);
+        // A bore has the colour of what was taken away.
+        let bore = format!(
+            "difference() {{ {RED} {{ cube(size = [4, 4, 4], center = true); }}
+             {BLUE} {{ cylinder(h = 6, r1 = 1, r2 = 1, center = true); }} }}"
+        );
+        is(&bore, &[("#0000FFFF", 1), ("#FF0000FF", 6)]);
+        // Three flush faces are one each, of the first primitive.
+        let flush = format!(
+            "{RED} {{ cube(size = [2, 2, 2]); }}
+             {BLUE} {{ multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {{ cube(size = [2, 2, 3]); }} }}"
+        );
+        is(&flush, &[("#0000FFFF", 3), ("#FF0000FF", 5)]);
+        // A ball has no edge. What is hulled has the colour around the hull.
+        let ball = format!("{BLUE} {{ sphere(r = 2); }} cube(size = 1);");
+        is(&ball, &[("#0000FFFF", 1)]);
+        let hull = format!("{BLUE} {{ hull() {{ {RED} {{ cube(size = 1); }} sphere(r = 0); }} }}");
+        is(&hull, &[("#0000FFFF", 6)]);
+    }
+
+    /// The outermost colour counts, also under a map that makes other primitives.
+    #[test]
+    fn colours_outside_win() {
+        let map = "multmatrix([[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])";
+        is(
+            &format!("{map} {{ {RED} {{ {BLUE} {{ sphere(r = 2); }} }} }}"),
+            &[("#FF0000FF", 1)],
+        );
+        is(
+            &format!("{BLUE} {{ {map} {{ {RED} {{ sphere(r = 2); }} }} }}"),
+            &[("#0000FFFF", 1)],
+        );
+        // Colours that OpenSCAD does not know.
+        is("color([-1, -1, -1, 1]) { cube(size = 2); }", &[]);
+    }
+}

@@ -147,6 +147,24 @@ fn a_part_without_a_bound_is_refused_with_a_direction() {
     }
 }
 
+/// Half-spaces that have a point, a line or nothing in common make an empty part, or one without a bound.
+#[test]
+fn half_spaces_without_a_common_inner_point_have_an_end() {
+    let [x, y, z] = ["1,0,0", "0,1,0", "0,0,1"].map(|axis| {
+        let [a, b, c] = [0, 1, 2].map(|i| axis.split(',').nth(i).unwrap().parse::<i32>().unwrap());
+        format!("HALF({a},{b},{c}) INT HALF({},{},{})", -a, -b, -c)
+    });
+    let volume = |text: &str| evaluated(text).mass().volume;
+    assert_eq!(volume(&format!("{x} INT {y} INT {z}")), 0.0);
+    assert_eq!(volume(&format!("BLO(X=4,Y=4,Z=4) INT {x}")), 0.0);
+    assert_eq!(volume("BLO(X=4,Y=4,Z=4) INT HALF(1,1,1,-1)"), 0.0);
+    assert_eq!(
+        volume("HALF(1,0,0,-1) INT HALF(-1,0,0,-1) INT SPH(R=4)"),
+        0.0
+    );
+    assert!(refusal(&x).contains("without a bound"));
+}
+
 /// Planes and axes at small angles: the part reaches far, and is bounded.
 #[test]
 fn a_part_that_reaches_far_is_bounded() {

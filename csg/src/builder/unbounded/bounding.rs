@@ -11,8 +11,12 @@ use crate::builder::UnboundedSide;
 const CUBES: i32 = 11;
 /// The number of times that a cell at infinity is divided.
 const DEPTH: u32 = 64;
-/// The number of cells at infinity after which a cube is given up.
+/// The number of cells at infinity after which a cube is given up, and of nodes in all of them.
 const MAX_CELLS: usize = 1 << 14;
+/// See [`MAX_CELLS`].
+const MAX_NODES: usize = 1 << 26;
+/// The size, in reaches of the region, from which a box is not shrunk further.
+const SMALL: f64 = 1.0 / (1u64 << 40) as f64;
 /// The number of times that a box is divided to shrink it.
 const HALVINGS: u32 = 3;
 
@@ -65,16 +69,17 @@ fn found_beyond(region: &Region, half: f64) -> Option<UnboundedSide> {
     }
     let faces = (0..3).flat_map(|i| [-1.0, 1.0].map(|side| (i, side)));
     let mut open: Vec<(Cell, u32, Region)> = Vec::new();
-    let mut looked = 0;
+    let (mut cells, mut nodes) = (0, 0);
     for (i, side) in faces {
         let mut u = [[-1.0, 1.0]; 3];
         u[i] = [side; 2];
         open.push((Cell { u, w }, 0, region.clone()));
         while let Some((cell, depth, region)) = open.pop() {
-            looked += 1;
+            (cells, nodes) = (cells + 1, nodes + region.node_count());
+            let is_early = depth < DEPTH && cells < MAX_CELLS && nodes < MAX_NODES;
             match region.within(&cell) {
                 RegionInCell::Outside => {}
-                RegionInCell::Unknown(rest) if depth < DEPTH && looked < MAX_CELLS => {
+                RegionInCell::Unknown(rest) if is_early => {
                     let parts = divided(&cell, i, reach).into_iter();
                     open.extend(parts.map(|part| (part, depth + 1, rest.clone())));
                 }
@@ -140,7 +145,8 @@ fn shrunk(region: &Region, start: BoundingCell) -> Option<BoundingCell> {
     let mut known = start;
     loop {
         let smaller = occupied(region, &known)?;
-        if smaller.size() > 0.5 * known.size() {
+        let is_small = smaller.size() <= SMALL * region.reach();
+        if is_small || smaller.size() > 0.5 * known.size() {
             return Some(smaller);
         }
         known = smaller;

@@ -247,6 +247,11 @@ impl Region {
         }
     }
 
+    /// The number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
     /// The region in a cell.
     pub fn within(&self, cell: &Cell) -> RegionInCell {
         let mut reduced = Self::default();

@@ -48,6 +48,18 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "csg/src/drawing_file",
         "exact numbers, and the validity of a text",
     ),
+    (
+        "kernel/src/colour.rs",
+        "colours, on which no boundary depends",
+    ),
+    (
+        "csg/src/evaluate/face_colours.rs",
+        "colours, on which no boundary depends",
+    ),
+    (
+        "csg/src/builder/unbounded",
+        "a box around the part with margins, and exact numbers",
+    ),
     ("csg/src/reader", "the validity of a text"),
     ("csg/src/writer", "the notation of numbers"),
     (

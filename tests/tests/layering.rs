@@ -109,7 +109,7 @@ const STAGES: &[(&str, &[&[&str]])] = &[
     (
         "kernel",
         &[
-            &["unit", "random", "number"],
+            &["unit", "colour", "random", "number"],
             &["motion"],
             &["geometry"],
             &["proof", "brep"],

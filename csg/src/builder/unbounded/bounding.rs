@@ -3,6 +3,7 @@
 //! Beyond a cube about the origin a point is u/w with u on the surface of the unit cube and w from 0 to
 //! the inverse of the cube's half edge. So finitely many cells show that nothing is out there.
 
+use super::enclosure::BoundingCell;
 use super::form::Cell;
 use super::region::{Region, RegionInCell};
 use crate::builder::UnboundedSide;
@@ -19,25 +20,6 @@ const MAX_NODES: usize = 1 << 26;
 const SMALL: f64 = 1.0 / (1u64 << 40) as f64;
 /// The number of times that a box is divided to shrink it.
 const HALVINGS: u32 = 3;
-
-/// A box: the range of each coordinate.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct BoundingCell(pub [[f64; 2]; 3]);
-
-impl BoundingCell {
-    /// The diagonal.
-    pub fn size(&self) -> f64 {
-        let squares = self.0.iter().map(|[lo, hi]| (hi - lo) * (hi - lo));
-        squares.sum::<f64>().sqrt()
-    }
-
-    fn hull(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            let ([a, b], [c, d]) = (self.0[i], other.0[i]);
-            [a.min(c), b.max(d)]
-        }))
-    }
-}
 
 /// A box that contains a region; `None` if that is empty.
 ///

@@ -1,7 +1,6 @@
 //! The removal of complements by De Morgan's laws.
 
 use super::{Builder, BuilderNode, OpenNode, SolidId};
-use crate::primitive::UnboundedPrimitive;
 use crate::tree::Operation;
 
 /// A solid, or the outside of it.
@@ -29,13 +28,8 @@ impl From<SolidId> for Signed {
     }
 }
 
-/// A copy of a draft without complements; `leaf` gives what stands for a primitive without a bound, of
-/// a draft.
-pub(super) fn rebuilt(
-    from: &Builder,
-    top: usize,
-    mut leaf: impl FnMut(&mut Builder, &UnboundedPrimitive, usize) -> SolidId,
-) -> (Builder, Signed) {
+/// A copy of a draft without complements, in another builder.
+pub(super) fn without_complements(from: &Builder, top: usize) -> (Builder, Signed) {
     let mut to = Builder::new();
     let mut copies: Vec<Signed> = Vec::with_capacity(top + 1);
     for (draft, is_used) in used(from, top).into_iter().enumerate() {
@@ -46,7 +40,7 @@ pub(super) fn rebuilt(
         to.set_colour(from.colours[draft]);
         let copy = match from.draft(draft) {
             BuilderNode::Leaf(primitive) => to.primitive(primitive.clone()).into(),
-            BuilderNode::Open(OpenNode::Leaf(primitive)) => leaf(&mut to, primitive, draft).into(),
+            BuilderNode::Open(OpenNode::Leaf(primitive)) => to.unbounded(primitive.clone()).into(),
             BuilderNode::Open(OpenNode::Complement(child)) => {
                 let child = child.map_or(SolidId::EMPTY.into(), |child| copies[child]);
                 child.outside()

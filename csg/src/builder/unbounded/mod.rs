@@ -1,13 +1,17 @@
 //! Parts with solids that have no bound: half-spaces, and the outside of solids.
 //!
 //! Complements are removed by De Morgan's laws. A box around the part is found, or it is shown that
-//! there is none. Then every solid without a bound is cut off outside the box, and the part is
-//! intersected with it. All faces of the box are outside the part, so none is in its boundary.
+//! there is none. Then every solid without a bound is cut off outside the box, where half-spaces of
+//! planes that are intersected become one polytope, and the part is intersected with the box. All
+//! faces of the box are outside the part, so none is in its boundary.
 
+mod bounded_copy;
 mod bounding;
 mod clipping;
 mod complements;
+mod enclosure;
 mod form;
+mod polytope;
 mod region;
 
 use super::{Builder, OpenNode, SolidId, TreeError, UnboundedSide};
@@ -15,9 +19,10 @@ use crate::builder::BuilderNode;
 use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::Operation;
-use bounding::BoundingCell;
-use clipping::{Ball, clipped};
-use complements::rebuilt;
+use bounded_copy::bounded_copy;
+
+use complements::without_complements;
+use enclosure::{Ball, BoundingCell};
 use region::Region;
 
 /// The same part in another builder, with bounded solids in place of those without a bound.
@@ -28,9 +33,7 @@ pub(super) fn bounded(builder: &Builder, part: SolidId) -> Result<(Builder, Soli
     let Some(top) = builder.draft_of(part) else {
         return Ok((Builder::new(), SolidId::EMPTY));
     };
-    let (without, whole) = rebuilt(builder, top, |to, primitive, _| {
-        to.unbounded(primitive.clone())
-    });
+    let (without, whole) = without_complements(builder, top);
     if whole.is_complement {
         return Err(TreeError::Unbounded(UnboundedSide::Everywhere));
     }
@@ -47,16 +50,10 @@ pub(super) fn bounded(builder: &Builder, part: SolidId) -> Result<(Builder, Soli
     };
     let block = cell.grown();
     let ball = block.ball();
-    let mut is_out_of_range = false;
-    let (mut bounded, part) = rebuilt(&without, top, |to, primitive, draft| {
-        let ball = region.local_ball(draft, &ball);
-        let solid = ball.and_then(|ball| clipped(to, primitive, &ball));
-        is_out_of_range |= solid.is_none();
-        solid.unwrap_or(SolidId::EMPTY)
-    });
-    let walls = walls(&mut bounded, &block, &ball).filter(|_| !is_out_of_range);
-    let walls = walls.ok_or(TreeError::OutOfRange)?;
-    let part = bounded.operation(Operation::Intersection, &[part.solid, walls]);
+    let copy = bounded_copy(&without, top, &region, &ball);
+    let (mut bounded, part) = copy.ok_or(TreeError::OutOfRange)?;
+    let walls = walls(&mut bounded, &block, &ball).ok_or(TreeError::OutOfRange)?;
+    let part = bounded.operation(Operation::Intersection, &[part, walls]);
     Ok((bounded, part))
 }
 

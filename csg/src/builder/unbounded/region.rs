@@ -1,6 +1,6 @@
 //! The set of points of a part, and whether cells are inside or outside.
 
-use super::clipping::Ball;
+use super::enclosure::Ball;
 use super::form::{Cell, LinearForm, square};
 use crate::builder::expansion::Expansion;
 use crate::builder::{Builder, BuilderNode, MAX_MOTION_BITS, OpenNode, Placement, TreeError};
@@ -50,13 +50,35 @@ enum Status {
     Unknown(usize),
 }
 
-/// A use of a solid without a bound.
+/// A use of a solid without a bound, or of an intersection with such a solid.
 #[derive(Debug, Clone)]
 struct UnboundedUse {
     draft: usize,
     /// The coordinates in the frame of the solid.
     local: [LinearForm; 3],
     factor: f64,
+}
+
+impl UnboundedUse {
+    fn new(draft: usize, placement: &Placement) -> Self {
+        let turn = placement.motion.rotation_f64();
+        let shift = placement.motion.translation_f64();
+        let factor = placement.factor.as_ref().map_or(1.0, to_f64);
+        let local = [0, 1, 2].map(|i| {
+            let is_mirrored = placement.mirrored && i == 1;
+            let mirror = if is_mirrored { -1.0 } else { 1.0 };
+            let axis = turn.column(i) * (mirror / factor);
+            LinearForm {
+                a: axis.into(),
+                b: -axis.dot(&shift),
+            }
+        });
+        Self {
+            draft,
+            local,
+            factor,
+        }
+    }
 }
 
 /// The set of points of a part. A node comes after its components; the last one is the part.
@@ -130,6 +152,9 @@ impl Region {
                     }
                     BuilderNode::Operation { op, children } => {
                         let count = children.len();
+                        if *op == Operation::Intersection {
+                            region.uses.push(UnboundedUse::new(draft, &placement));
+                        }
                         steps.push(Step::Combine { op: *op, count });
                         let enter = |&child: &usize| Step::Enter(child, Rc::clone(&placement));
                         steps.extend(children.iter().rev().map(enter));
@@ -162,26 +187,9 @@ impl Region {
         primitive: &UnboundedPrimitive,
         placement: &Placement,
     ) -> Shape {
-        let turn = placement.motion.rotation_f64();
-        let shift = placement.motion.translation_f64();
-        let factor = placement.factor.as_ref().map_or(1.0, to_f64);
-        let local = [0, 1, 2].map(|i| {
-            let mirror = if placement.mirrored && i == 1 {
-                -1.0
-            } else {
-                1.0
-            };
-            let axis = turn.column(i) * (mirror / factor);
-            LinearForm {
-                a: axis.into(),
-                b: -axis.dot(&shift),
-            }
-        });
-        self.uses.push(UnboundedUse {
-            draft,
-            local,
-            factor,
-        });
+        let used = UnboundedUse::new(draft, placement);
+        let local = used.local;
+        self.uses.push(used);
         let [x, y, z] = local;
         match primitive {
             UnboundedPrimitive::HalfSpace { normal, offset } => {

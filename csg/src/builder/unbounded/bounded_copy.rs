@@ -1,0 +1,144 @@
+//! The copy of a part with bounded solids in place of those without a bound.
+
+use super::clipping::clipped;
+use super::enclosure::Ball;
+use super::polytope::{Common, HalfSpace};
+use super::region::Region;
+use super::{Builder, BuilderNode, OpenNode, SolidId};
+use crate::primitive::{Primitive, UnboundedPrimitive};
+use crate::tree::Operation;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The operands of an intersection, with those of the intersections among them.
+#[derive(Debug, Default)]
+struct FlatIntersection {
+    half_spaces: Vec<HalfSpace>,
+    /// The drafts of the other operands.
+    rest: Vec<usize>,
+}
+
+impl FlatIntersection {
+    fn new(builder: &Builder, children: &[usize]) -> Self {
+        let mut flat = Self::default();
+        let mut open: Vec<usize> = children.iter().rev().copied().collect();
+        while let Some(child) = open.pop() {
+            match builder.draft(child) {
+                BuilderNode::Operation {
+                    op: Operation::Intersection,
+                    children,
+                } if builder.open[child] => open.extend(children.iter().rev()),
+                BuilderNode::Moved {
+                    child: inner,
+                    placement,
+                    ..
+                } => match half_space(builder, *inner) {
+                    Some(inner) => flat.half_spaces.push(inner.placed(placement)),
+                    None => flat.rest.push(child),
+                },
+                _ => match half_space(builder, child) {
+                    Some(half_space) => flat.half_spaces.push(half_space),
+                    None => flat.rest.push(child),
+                },
+            }
+        }
+        flat
+    }
+}
+
+/// A draft that is a half-space of a plane.
+fn half_space(builder: &Builder, draft: usize) -> Option<HalfSpace> {
+    match builder.draft(draft) {
+        BuilderNode::Open(OpenNode::Leaf(UnboundedPrimitive::HalfSpace { normal, offset })) => {
+            Some(HalfSpace {
+                normal: normal.clone(),
+                offset: offset.clone(),
+            })
+        }
+        _ => None,
+    }
+}
+
+/// The drafts that a part without complements consists of, and what its intersections are.
+fn components(builder: &Builder, top: usize) -> BTreeMap<usize, Option<FlatIntersection>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![top];
+    while let Some(draft) = open.pop() {
+        if found.contains_key(&draft) {
+            continue;
+        }
+        let flat = match builder.draft(draft) {
+            BuilderNode::Operation {
+                op: Operation::Intersection,
+                children,
+            } if builder.open[draft] => Some(FlatIntersection::new(builder, children)),
+            _ => None,
+        };
+        match &flat {
+            Some(flat) => open.extend(&flat.rest),
+            None => open.extend(builder.draft(draft).children()),
+        }
+        found.insert(draft, flat);
+    }
+    found
+}
+
+/// A copy of a draft without complements that is the same inside a ball, and bounded; `None` if numbers
+/// are beyond the range of f64.
+pub(super) fn bounded_copy(
+    from: &Builder,
+    top: usize,
+    region: &Region,
+    ball: &Ball,
+) -> Option<(Builder, SolidId)> {
+    let mut to = Builder::new();
+    let mut copies: BTreeMap<usize, SolidId> = BTreeMap::new();
+    // Components come before what they compose.
+    for (draft, flat) in components(from, top) {
+        to.set_colour(from.colours[draft]);
+        let all = |drafts: &[usize]| -> Vec<SolidId> {
+            let known = drafts.iter().filter_map(|draft| copies.get(draft));
+            known.copied().collect()
+        };
+        let local = || region.local_ball(draft, ball);
+        let copy = match (from.draft(draft), flat) {
+            (BuilderNode::Operation { op, .. }, Some(flat)) => {
+                let mut operands = all(&flat.rest);
+                if !flat.half_spaces.is_empty() {
+                    operands.push(polytope(&mut to, &flat.half_spaces, &local()?)?);
+                }
+                to.operation(*op, &operands)
+            }
+            (BuilderNode::Operation { op, children }, None) => to.operation(*op, &all(children)),
+            (BuilderNode::Leaf(primitive), _) => to.primitive(primitive.clone()),
+            (BuilderNode::Open(OpenNode::Leaf(primitive)), _) => {
+                clipped(&mut to, primitive, &local()?)?
+            }
+            (BuilderNode::Open(OpenNode::Complement(_)), _) => SolidId::EMPTY,
+            (
+                BuilderNode::Moved {
+                    child,
+                    placement,
+                    entry,
+                },
+                _,
+            ) => {
+                let inner = copies.get(child).copied().unwrap_or(SolidId::EMPTY);
+                to.placed(inner, placement.clone(), from.placings(*entry))
+            }
+        };
+        copies.insert(draft, copy);
+    }
+    let copy = copies.get(&top).copied();
+    Some((to, copy.unwrap_or(SolidId::EMPTY)))
+}
+
+/// What half-spaces have in common in a ball.
+fn polytope(builder: &mut Builder, half_spaces: &[HalfSpace], ball: &Ball) -> Option<SolidId> {
+    Some(match Common::new(half_spaces, ball)? {
+        Common::Nothing => SolidId::EMPTY,
+        Common::Polytope(polyhedron) => builder.primitive(Primitive::Polyhedron {
+            polyhedron: Arc::new(polyhedron),
+        }),
+    })
+}

@@ -42,7 +42,7 @@ fn length() -> impl Strategy<Value = f64> {
 }
 
 fn leaf() -> impl Strategy<Value = Pair> {
-    (0..4_i32, length(), length(), length()).prop_map(|(kind, a, b, c)| {
+    (0..6_i32, length(), length(), length()).prop_map(|(kind, a, b, c)| {
         let [bounded, unbounded] = match kind {
             0 => [
                 format!("BLO(X={a}, Y={b}, Z={c})"),
@@ -57,6 +57,18 @@ fn leaf() -> impl Strategy<Value = Pair> {
             2 => [
                 format!("CON(R={a}, H={b})"),
                 format!("ICON(SLOPE={a}/{b}) AT (ROTX=180, MOVZ={b}) INT HALF(0,0,-1)"),
+            ],
+            3 => [
+                format!("SPH(R={a}) DIF BLO(X=20, Y=20, Z=20) AT (MOVX=-10, MOVY=-10, MOVZ={b}-1)"),
+                format!("SPH(R={a}) DIF HALF(0,0,-1,1-{b})"),
+            ],
+            4 => [
+                format!(
+                    "BLO(X={a}, Y={b}, Z={c}) DIF (BLO(X=20, Y=20, Z=20) AT (MOVX={a}/2) UN BLO(X=20, Y=20, Z=20) AT (MOVY={b}/2))"
+                ),
+                format!(
+                    "BLO(X={a}, Y={b}, Z={c}) DIF (HALF(1,0,0,-{a}/2) AT (ROTZ=180) UN HALF(0,-2,0,-{b}))"
+                ),
             ],
             _ => [format!("SPH(R={a})"), format!("OUT(OUT(SPH(R={a})))")],
         };

@@ -87,7 +87,9 @@ impl Wrapping<'_> {
                 let most = on.iter().copied().max_by(|&a, &b| exact(a).cmp(exact(b)))?;
                 self.facet_at([least, most])
             }
-            false => Some(self.polygon(on, &normal([a, b, &below]))),
+            false => Some(polygon(on, &normal([a, b, &below]), |i| {
+                &self.points[i].exact
+            })),
         }
     }
 
@@ -112,45 +114,50 @@ impl Wrapping<'_> {
         };
         let on: Vec<usize> = (0..self.points.len()).filter(on).collect();
         // All points in one plane bound nothing.
-        (on.len() < self.points.len()).then(|| self.polygon(on, &normal(corners)))
+        (on.len() < self.points.len())
+            .then(|| polygon(on, &normal(corners), |i| &self.points[i].exact))
     }
+}
 
-    /// The convex hull of points in a plane, counterclockwise about the normal: the monotone chain
-    /// (Andrew 1979).
-    fn polygon(&self, mut on: Vec<usize>, normal: &SpacePoint) -> Vec<usize> {
-        // The plane is projected along the axis on which the normal is longest.
-        let size = |i: usize| match normal[i] < Rational::ZERO {
-            true => -&normal[i],
-            false => normal[i].clone(),
-        };
-        let axis = (0..3).max_by(|&a, &b| size(a).cmp(&size(b))).unwrap_or(2);
-        let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
-        if normal[axis] < Rational::ZERO {
-            std::mem::swap(&mut u, &mut v);
-        }
-        let at = |i: usize, axis: usize| &self.points[i].exact[axis];
-        on.sort_by(|&a, &b| at(a, u).cmp(at(b, u)).then(at(a, v).cmp(at(b, v))));
-        let turn = |a: usize, b: usize, c: usize| {
-            let by = |i: usize, axis: usize| at(i, axis) - at(a, axis);
-            (by(b, u) * by(c, v) - by(b, v) * by(c, u)).cmp(&Rational::ZERO)
-        };
-        let half = |points: &mut dyn Iterator<Item = usize>| {
-            let mut chain: Vec<usize> = Vec::new();
-            for point in points {
-                while let [.., a, b] = chain[..]
-                    && turn(a, b, point) != Ordering::Greater
-                {
-                    chain.pop();
-                }
-                chain.push(point);
-            }
-            chain.pop();
-            chain
-        };
-        let lower = half(&mut on.iter().copied());
-        let upper = half(&mut on.iter().rev().copied());
-        lower.into_iter().chain(upper).collect()
+/// The convex hull of points in a plane, counterclockwise about the normal: the monotone chain
+/// (Andrew 1979).
+pub(super) fn polygon<'a>(
+    mut on: Vec<usize>,
+    normal: &SpacePoint,
+    point: impl Fn(usize) -> &'a SpacePoint,
+) -> Vec<usize> {
+    // The plane is projected along the axis on which the normal is longest.
+    let size = |i: usize| match normal[i] < Rational::ZERO {
+        true => -&normal[i],
+        false => normal[i].clone(),
+    };
+    let axis = (0..3).max_by(|&a, &b| size(a).cmp(&size(b))).unwrap_or(2);
+    let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
+    if normal[axis] < Rational::ZERO {
+        std::mem::swap(&mut u, &mut v);
     }
+    let at = |i: usize, axis: usize| &point(i)[axis];
+    on.sort_by(|&a, &b| at(a, u).cmp(at(b, u)).then(at(a, v).cmp(at(b, v))));
+    let turn = |a: usize, b: usize, c: usize| {
+        let by = |i: usize, axis: usize| at(i, axis) - at(a, axis);
+        (by(b, u) * by(c, v) - by(b, v) * by(c, u)).cmp(&Rational::ZERO)
+    };
+    let half = |points: &mut dyn Iterator<Item = usize>| {
+        let mut chain: Vec<usize> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain[..]
+                && turn(a, b, point) != Ordering::Greater
+            {
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let lower = half(&mut on.iter().copied());
+    let upper = half(&mut on.iter().rev().copied());
+    lower.into_iter().chain(upper).collect()
 }
 
 fn normal([a, b, c]: [&FilteredPoint; 3]) -> SpacePoint {

@@ -3,6 +3,7 @@
 mod convex_hull;
 mod coplanar;
 mod crossing;
+mod half_spaces;
 mod neighbours;
 mod orientation;
 mod shells;
@@ -11,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use premio_kernel::number::rational::{Rational, to_f64};
 
+pub use half_spaces::HalfSpace;
 use orientation::{FilteredPoint, are_in_line, orientation, plane_normal};
 pub(crate) use orientation::{cross, dot};
 

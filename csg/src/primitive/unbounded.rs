@@ -3,7 +3,7 @@
 use premio_kernel::number::rational::Rational;
 
 use super::{Dimension, PrimitiveError, positive};
-use crate::polyhedron::SpacePoint;
+use crate::polyhedron::{HalfSpace, SpacePoint};
 
 /// A solid without a bound, in its own frame. Other solids of a part must bound it.
 ///
@@ -12,13 +12,8 @@ use crate::polyhedron::SpacePoint;
 /// [`Builder::complement`]: crate::builder::Builder::complement
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UnboundedPrimitive {
-    /// The points on one side of a plane: n · p <= d.
-    HalfSpace {
-        /// The outward normal n; its largest component is 1 or -1.
-        normal: SpacePoint,
-        /// The offset d.
-        offset: Rational,
-    },
+    /// The points on one side of a plane. The largest component of its normal is 1 or -1.
+    HalfSpace(HalfSpace),
     /// The points within the radius of the z axis.
     Cylinder {
         /// The radius.
@@ -42,10 +37,10 @@ impl UnboundedPrimitive {
         if largest.is_zero() {
             return Err(PrimitiveError::NoNormal);
         }
-        Ok(Self::HalfSpace {
+        Ok(Self::HalfSpace(HalfSpace {
             normal: normal.map(|x| x / &largest),
             offset: offset / &largest,
-        })
+        }))
     }
 
     /// The cylinder about the z axis, without ends.

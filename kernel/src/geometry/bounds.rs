@@ -175,7 +175,7 @@ fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiec
     .collect()
 }
 
-/// Whether a rounded curve has every sampled point of the curve to a distance.
+/// Whether a rounded curve is within a distance of the curve at every sample.
 fn keeps_points<N: Float>(
     curve: &Curve<N>,
     rounded: &Curve,

@@ -1,14 +1,13 @@
 //! The copy of a part with bounded solids in place of those without a bound.
 
-use super::clipping::clipped;
+use super::clipping::{clipped, polytope};
 use super::enclosure::Ball;
-use super::polytope::{Common, HalfSpace};
+use super::half_space::half_space;
 use super::region::Region;
 use super::{Builder, BuilderNode, OpenNode, SolidId};
-use crate::primitive::{Primitive, UnboundedPrimitive};
+use crate::polyhedron::HalfSpace;
 use crate::tree::Operation;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// The operands of an intersection, with those of the intersections among them.
 #[derive(Debug, Default)]
@@ -28,14 +27,6 @@ impl FlatIntersection {
                     op: Operation::Intersection,
                     children,
                 } if builder.open[child] => open.extend(children.iter().rev()),
-                BuilderNode::Moved {
-                    child: inner,
-                    placement,
-                    ..
-                } => match half_space(builder, *inner) {
-                    Some(inner) => flat.half_spaces.push(inner.placed(placement)),
-                    None => flat.rest.push(child),
-                },
                 _ => match half_space(builder, child) {
                     Some(half_space) => flat.half_spaces.push(half_space),
                     None => flat.rest.push(child),
@@ -43,19 +34,6 @@ impl FlatIntersection {
             }
         }
         flat
-    }
-}
-
-/// A draft that is a half-space of a plane.
-fn half_space(builder: &Builder, draft: usize) -> Option<HalfSpace> {
-    match builder.draft(draft) {
-        BuilderNode::Open(OpenNode::Leaf(UnboundedPrimitive::HalfSpace { normal, offset })) => {
-            Some(HalfSpace {
-                normal: normal.clone(),
-                offset: offset.clone(),
-            })
-        }
-        _ => None,
     }
 }
 
@@ -131,14 +109,4 @@ pub(super) fn bounded_copy(
     }
     let copy = copies.get(&top).copied();
     Some((to, copy.unwrap_or(SolidId::EMPTY)))
-}
-
-/// What half-spaces have in common in a ball.
-fn polytope(builder: &mut Builder, half_spaces: &[HalfSpace], ball: &Ball) -> Option<SolidId> {
-    Some(match Common::new(half_spaces, ball)? {
-        Common::Nothing => SolidId::EMPTY,
-        Common::Polytope(polyhedron) => builder.primitive(Primitive::Polyhedron {
-            polyhedron: Arc::new(polyhedron),
-        }),
-    })
 }

@@ -1,18 +1,12 @@
 //! Bounded solids that are the same as one without a bound inside a ball.
 
-use super::enclosure::{Ball, FINENESS, LARGER};
+use super::enclosure::{Ball, BoundingCell, LARGER};
 use crate::builder::{Builder, SolidId};
-use crate::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint, cross, dot};
+use crate::polyhedron::{HalfSpace, Polyhedron, SpacePoint};
 use crate::primitive::{Primitive, UnboundedPrimitive};
 use crate::transform::{Transform, along};
-use premio_kernel::number::rational::{Rational, from_f64, to_f64};
+use premio_kernel::number::rational::to_f64;
 use std::sync::Arc;
-
-/// A number of few digits that is at least as large.
-fn rounded_up(x: f64) -> Option<Rational> {
-    let grid = 2.0_f64.powi(x.log2().floor() as i32 - FINENESS);
-    from_f64((x / grid).ceil() * grid)
-}
 
 /// A solid that is the same as one without a bound inside a ball; `None` if its numbers are beyond the
 /// range of f64.
@@ -25,15 +19,8 @@ pub(super) fn clipped(
     let [x, y, z] = centre;
     let off_axis = x.hypot(y);
     match primitive {
-        UnboundedPrimitive::HalfSpace { normal, offset } => {
-            let n = normal.each_ref().map(to_f64);
-            let size = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let terms = n.iter().zip(&centre);
-            let level = (terms.map(|(n, x)| n * x).sum::<f64>() - to_f64(offset)) / size;
-            match side(level, radius) {
-                Some(side) => covered(builder, side, ball),
-                None => slab(builder, normal, offset, ball),
-            }
+        UnboundedPrimitive::HalfSpace(half_space) => {
+            polytope(builder, std::slice::from_ref(half_space), ball)
         }
         UnboundedPrimitive::Cylinder { radius: own } => {
             match side(off_axis - to_f64(own), radius) {
@@ -90,9 +77,7 @@ fn covered(builder: &mut Builder, side: Side, ball: &Ball) -> Option<SolidId> {
     if side == Side::Outside {
         return Some(SolidId::EMPTY);
     }
-    let corner = ball.rounded(ball.centre.map(|x| x - LARGER * ball.radius))?;
-    let size = ball.rounded([2.0 * LARGER * ball.radius; 3])?;
-    Some(placed(builder, Primitive::block(size).ok()?, corner))
+    polytope(builder, &[], ball)
 }
 
 fn placed(builder: &mut Builder, primitive: Primitive, at: SpacePoint) -> SolidId {
@@ -100,40 +85,17 @@ fn placed(builder: &mut Builder, primitive: Primitive, at: SpacePoint) -> SolidI
     builder.moved(solid, Transform::shift(at))
 }
 
-/// A cuboid with a face in a plane that contains all of the half-space in a ball.
-fn slab(
+/// The polytope that is the intersection of half-spaces in a ball.
+pub(super) fn polytope(
     builder: &mut Builder,
-    normal: &SpacePoint,
-    offset: &Rational,
+    half_spaces: &[HalfSpace],
     ball: &Ball,
 ) -> Option<SolidId> {
-    let centre = ball.rounded(ball.centre)?;
-    let excess = (dot(normal, &centre) - offset) / dot(normal, normal);
-    let foot: SpacePoint = std::array::from_fn(|i| &centre[i] - &normal[i] * &excess);
-    let size = |v: &SpacePoint| to_f64(&dot(v, v)).sqrt();
-    let least = (0..3).min_by(|&i, &j| {
-        let [a, b] = [i, j].map(|i| to_f64(&normal[i]).abs());
-        a.total_cmp(&b)
-    });
-    let u = cross(normal, &along(least.unwrap_or(0), Rational::ONE));
-    let v = cross(normal, &u);
-    let [a, b] = [&u, &v].map(|v| rounded_up(LARGER * ball.radius / size(v)));
-    let (a, b) = (a?, b?);
-    let depth = rounded_up(2.0 * LARGER * ball.radius / size(normal))?;
-    let corner = |p: i32, q: i32, h: i32| -> SpacePoint {
-        let [p, q, h] = [(p, &a), (q, &b), (h, &depth)].map(|(k, by)| Rational::from(k) * by);
-        std::array::from_fn(|i| &foot[i] + &u[i] * &p + &v[i] * &q - &normal[i] * &h)
+    let BoundingCell(ranges) = ball.cube();
+    let [x, y, z] = ranges.map(|range| ball.rounded(range));
+    let Some(polytope) = Polyhedron::intersection(&[x?, y?, z?], half_spaces) else {
+        return Some(SolidId::EMPTY);
     };
-    let around = [(-1, -1), (1, -1), (1, 1), (-1, 1)];
-    let points: Vec<SpacePoint> = [0, 1]
-        .into_iter()
-        .flat_map(|h| around.map(|(p, q)| corner(p, q, h)))
-        .collect();
-    let sides = (0..4).map(|i| vec![i, i + 4, (i + 1) % 4 + 4, (i + 1) % 4]);
-    let faces = [vec![0, 1, 2, 3], vec![7, 6, 5, 4]]
-        .into_iter()
-        .chain(sides);
-    let faces: Vec<PolyhedronFace> = faces.map(PolyhedronFace::simple).collect();
-    let polyhedron = Arc::new(Polyhedron::from_faces(&points, &faces).ok()?.polyhedron);
+    let polyhedron = Arc::new(polytope);
     Some(builder.primitive(Primitive::Polyhedron { polyhedron }))
 }

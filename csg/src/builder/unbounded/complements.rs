@@ -1,6 +1,9 @@
 //! The removal of complements by De Morgan's laws.
 
+use super::half_space::half_space;
 use super::{Builder, BuilderNode, OpenNode, SolidId};
+use crate::polyhedron::HalfSpace;
+use crate::primitive::UnboundedPrimitive;
 use crate::tree::Operation;
 
 /// A solid, or the outside of it.
@@ -16,6 +19,21 @@ impl Signed {
             is_complement: !self.is_complement,
             ..self
         }
+    }
+
+    /// The same; the outside of a half-space as the half-space on the other side of its plane.
+    fn reversed(self, builder: &mut Builder) -> Self {
+        let draft = builder.draft_of(self.solid).filter(|_| self.is_complement);
+        let Some(own) = draft.and_then(|draft| half_space(builder, draft)) else {
+            return self;
+        };
+        let other = HalfSpace {
+            normal: own.normal.map(|x| -x),
+            offset: -own.offset,
+        };
+        builder
+            .unbounded(UnboundedPrimitive::HalfSpace(other))
+            .into()
     }
 }
 
@@ -93,6 +111,10 @@ fn combined(builder: &mut Builder, op: Operation, operands: &[Signed]) -> Signed
             Operation::Difference | Operation::Union => operand.outside(),
         }
     });
+    let operands: Vec<Signed> = operands.collect();
+    let operands = operands
+        .into_iter()
+        .map(|operand| operand.reversed(builder));
     let (outside, inside): (Vec<Signed>, Vec<Signed>) = operands.partition(|o| o.is_complement);
     let [outside, inside] =
         [outside, inside].map(|all| all.iter().map(|o| o.solid).collect::<Vec<SolidId>>());

@@ -52,15 +52,9 @@ impl Ball {
         BoundingCell(self.centre.map(|x| [x - half, x + half]))
     }
 
-    /// The ball around the boxes of two balls.
+    /// A ball around two.
     pub fn hull(&self, other: &Self) -> Self {
-        let ends =
-            |ball: &Self, i: usize| [-1.0, 1.0].map(|side| ball.centre[i] + side * ball.radius);
-        let cell = BoundingCell(std::array::from_fn(|i| {
-            let ([a, b], [c, d]) = (ends(self, i), ends(other, i));
-            [a.min(c), b.max(d)]
-        }));
-        cell.ball()
+        self.cube().hull(&other.cube()).ball()
     }
 
     /// Numbers with few digits, to a part of the radius.
@@ -77,4 +71,4 @@ const MARGIN: f64 = 1.0 / 16.0;
 /// The size of a solid that is the same as another one in a ball, in radii: more than the ball's.
 pub(super) const LARGER: f64 = 1.25;
 /// The number of binary digits after the leading one of the radius.
-pub(super) const FINENESS: i32 = 7;
+const FINENESS: i32 = 7;

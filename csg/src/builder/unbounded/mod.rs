@@ -11,7 +11,7 @@ mod clipping;
 mod complements;
 mod enclosure;
 mod form;
-mod polytope;
+mod half_space;
 mod region;
 
 use super::{Builder, OpenNode, SolidId, TreeError, UnboundedSide};
@@ -20,7 +20,6 @@ use crate::primitive::Primitive;
 use crate::transform::Transform;
 use crate::tree::Operation;
 use bounded_copy::bounded_copy;
-
 use complements::without_complements;
 use enclosure::{Ball, BoundingCell};
 use region::Region;

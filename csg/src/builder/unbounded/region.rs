@@ -4,6 +4,7 @@ use super::enclosure::Ball;
 use super::form::{Cell, LinearForm, square};
 use crate::builder::expansion::Expansion;
 use crate::builder::{Builder, BuilderNode, MAX_MOTION_BITS, OpenNode, Placement, TreeError};
+use crate::polyhedron::HalfSpace;
 use crate::primitive::UnboundedPrimitive;
 use crate::ray_casting::RayOracle;
 use crate::tree::Operation;
@@ -192,7 +193,7 @@ impl Region {
         self.uses.push(used);
         let [x, y, z] = local;
         match primitive {
-            UnboundedPrimitive::HalfSpace { normal, offset } => {
+            UnboundedPrimitive::HalfSpace(HalfSpace { normal, offset }) => {
                 let normal = normal.each_ref().map(to_f64);
                 let sum = |parts: [f64; 3]| -> f64 {
                     normal.iter().zip(parts).map(|(n, part)| n * part).sum()

@@ -126,6 +126,11 @@ fn planes() {
         let above = 2.0 * p[0] + 2.0 * p[1] + p[2];
         p.iter().all(|&x| x >= 0.0) && above <= 3.0
     });
+    let scaled = "intersection { sphere { 0, 3 } plane { y, 1 scale <1, -1, 1> } plane { x+z, 1/2 scale 2 } }";
+    points(scaled, |p| {
+        let is_in_ball = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 9.0;
+        is_in_ball && p[1] > -1.0 && (p[0] + p[2]) / 2.0_f64.sqrt() < 1.0
+    });
     assert_snapshot!(pov("plane { y, 1 }"), @"part:1:1: found a part without a bound toward +x, expected solids that bound it on every side");
     assert_snapshot!(pov("plane { 0*x, 1 }"), @"part:1:9: found the normal (0, 0, 0), expected a normal of some length");
 }

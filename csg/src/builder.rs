@@ -48,9 +48,9 @@ pub enum TreeError {
     ForeignSolid,
     /// The part has no bound, or one that is more than a million times further than its components
     /// reach.
-    #[error("a part without a bound {0}")]
+    #[error("a part that is unbounded {0}")]
     Unbounded(UnboundedSide),
-    /// A solid without a bound has numbers that f64 does not hold.
+    /// An unbounded solid has numbers that f64 does not hold.
     #[error("a half-space with numbers beyond the range of f64")]
     OutOfRange,
 }
@@ -67,7 +67,7 @@ pub enum UnboundedSide {
 impl fmt::Display for UnboundedSide {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let direction = match self {
-            Self::Everywhere => return f.write_str("on any side"),
+            Self::Everywhere => return f.write_str("on every side"),
             Self::Toward(direction) => direction,
         };
         let axis = |i: usize| (0..3).all(|j| j == i || direction[j] == 0);
@@ -112,7 +112,7 @@ impl SolidId {
 pub(crate) enum BuilderNode {
     Leaf(Primitive),
     /// A solid that is replaced by a bounded one when the tree is finished.
-    Open(OpenNode),
+    Unbounded(UnboundedNode),
     Operation {
         op: Operation,
         children: Vec<usize>,
@@ -125,9 +125,9 @@ pub(crate) enum BuilderNode {
     },
 }
 
-/// A solid without a bound.
+/// An unbounded solid.
 #[derive(Debug, Clone)]
-pub(crate) enum OpenNode {
+pub(crate) enum UnboundedNode {
     Leaf(UnboundedPrimitive),
     /// The outside of a solid that is not moved; of the empty one, everything.
     Complement(Option<usize>),
@@ -210,12 +210,12 @@ pub struct Builder {
     leaves: Vec<u64>,
     /// Whether each draft contains a solid of another builder.
     foreign: Vec<bool>,
-    /// Whether each draft contains a solid without a bound.
-    open: Vec<bool>,
+    /// Whether each draft contains an unbounded solid.
+    has_unbounded_part: Vec<bool>,
     /// The colour of each primitive.
     colours: Vec<Option<Colour>>,
     /// The colour of new primitives.
-    brush: Option<Colour>,
+    current_colour: Option<Colour>,
     entries: Vec<Entry>,
 }
 
@@ -229,9 +229,9 @@ impl Default for Builder {
             drafts: Vec::new(),
             leaves: Vec::new(),
             foreign: Vec::new(),
-            open: Vec::new(),
+            has_unbounded_part: Vec::new(),
             colours: Vec::new(),
-            brush: None,
+            current_colour: None,
             entries: Vec::new(),
         }
     }
@@ -245,13 +245,14 @@ impl Builder {
 
     fn add(&mut self, draft: BuilderNode, leaves: u64) -> SolidId {
         let any = |flags: &[bool]| draft.children().iter().any(|&child| flags[child]);
-        let (foreign, open) = (any(&self.foreign), any(&self.open));
-        let open = open || matches!(draft, BuilderNode::Open(_));
+        let foreign = any(&self.foreign);
+        let is_unbounded = matches!(draft, BuilderNode::Unbounded(_));
+        let has_unbounded_part = is_unbounded || any(&self.has_unbounded_part);
         self.drafts.push(draft);
         self.leaves.push(leaves);
         self.foreign.push(foreign);
-        self.open.push(open);
-        self.colours.push(self.brush);
+        self.has_unbounded_part.push(has_unbounded_part);
+        self.colours.push(self.current_colour);
         self.solid(self.drafts.len() - 1)
     }
 
@@ -272,7 +273,7 @@ impl Builder {
         });
         self.leaves.push(0);
         self.foreign.push(true);
-        self.open.push(false);
+        self.has_unbounded_part.push(false);
         self.colours.push(None);
         Some(self.drafts.len() - 1)
     }
@@ -302,12 +303,12 @@ impl Builder {
         self.drafts
             .extend(other.drafts.iter().map(|draft| match draft {
                 BuilderNode::Leaf(primitive) => BuilderNode::Leaf(primitive.clone()),
-                BuilderNode::Open(OpenNode::Leaf(primitive)) => {
-                    BuilderNode::Open(OpenNode::Leaf(primitive.clone()))
+                BuilderNode::Unbounded(UnboundedNode::Leaf(primitive)) => {
+                    BuilderNode::Unbounded(UnboundedNode::Leaf(primitive.clone()))
                 }
-                BuilderNode::Open(OpenNode::Complement(child)) => {
+                BuilderNode::Unbounded(UnboundedNode::Complement(child)) => {
                     let child = child.map(|child| child + drafts);
-                    BuilderNode::Open(OpenNode::Complement(child))
+                    BuilderNode::Unbounded(UnboundedNode::Complement(child))
                 }
                 BuilderNode::Operation { op, children } => BuilderNode::Operation {
                     op: *op,
@@ -325,19 +326,19 @@ impl Builder {
             }));
         self.leaves.extend(&other.leaves);
         self.foreign.extend(&other.foreign);
-        self.open.extend(&other.open);
+        self.has_unbounded_part.extend(&other.has_unbounded_part);
         self.colours.extend(&other.colours);
         Ok(self.solid(slot.index + drafts))
     }
 
     /// Sets the colour of primitives that are added from now on; gives the one until now.
     pub fn set_colour(&mut self, colour: Option<Colour>) -> Option<Colour> {
-        std::mem::replace(&mut self.brush, colour)
+        std::mem::replace(&mut self.current_colour, colour)
     }
 
     /// The colour of new primitives.
-    pub(crate) fn brush(&self) -> Option<Colour> {
-        self.brush
+    pub(crate) fn current_colour(&self) -> Option<Colour> {
+        self.current_colour
     }
 
     /// A primitive in its own frame.
@@ -345,19 +346,19 @@ impl Builder {
         self.add(BuilderNode::Leaf(primitive), 1)
     }
 
-    /// A solid without a bound in its own frame. Other solids must bound the part.
+    /// An unbounded solid in its own frame. Other solids must bound the part.
     pub fn unbounded(&mut self, primitive: UnboundedPrimitive) -> SolidId {
-        self.add(BuilderNode::Open(OpenNode::Leaf(primitive)), 1)
+        self.add(BuilderNode::Unbounded(UnboundedNode::Leaf(primitive)), 1)
     }
 
     /// The outside of a part. Other solids must bound the whole.
     pub fn complement(&mut self, part: SolidId) -> SolidId {
         let Some(index) = self.place_of(part) else {
-            return self.add(BuilderNode::Open(OpenNode::Complement(None)), 0);
+            return self.add(BuilderNode::Unbounded(UnboundedNode::Complement(None)), 0);
         };
         match &self.drafts[index] {
-            BuilderNode::Open(OpenNode::Complement(Some(inner))) => self.solid(*inner),
-            BuilderNode::Open(OpenNode::Complement(None)) => SolidId::EMPTY,
+            BuilderNode::Unbounded(UnboundedNode::Complement(Some(inner))) => self.solid(*inner),
+            BuilderNode::Unbounded(UnboundedNode::Complement(None)) => SolidId::EMPTY,
             BuilderNode::Moved {
                 child,
                 placement,
@@ -370,7 +371,7 @@ impl Builder {
             }
             _ => {
                 let leaves = self.leaves[index];
-                let outside = BuilderNode::Open(OpenNode::Complement(Some(index)));
+                let outside = BuilderNode::Unbounded(UnboundedNode::Complement(Some(index)));
                 self.add(outside, leaves)
             }
         }
@@ -467,7 +468,7 @@ impl Builder {
                 placement: inner,
                 entry,
             } => (*child, inner.then(&placement), Some(*entry)),
-            BuilderNode::Leaf(_) | BuilderNode::Open(_) | BuilderNode::Operation { .. } => {
+            BuilderNode::Leaf(_) | BuilderNode::Unbounded(_) | BuilderNode::Operation { .. } => {
                 (child, placement, None)
             }
         };
@@ -518,7 +519,7 @@ impl Builder {
         if leaves > MAX_LEAVES {
             return Err(TreeError::TooManyLeaves { leaves });
         }
-        if self.open[top] {
+        if self.has_unbounded_part[top] {
             let (bounded, part) = self.bounded(part)?;
             return bounded.finish(part);
         }
@@ -527,12 +528,13 @@ impl Builder {
         Ok(expansion.tree)
     }
 
-    /// Whether a part contains solids without a bound.
-    pub(crate) fn is_open(&self, part: SolidId) -> bool {
-        self.draft_of(part).is_some_and(|draft| self.open[draft])
+    /// Whether a part contains unbounded solids.
+    pub(crate) fn has_unbounded(&self, part: SolidId) -> bool {
+        self.draft_of(part)
+            .is_some_and(|draft| self.has_unbounded_part[draft])
     }
 
-    /// The same part in another builder, with bounded solids in place of those without a bound.
+    /// The same part in another builder, with bounded solids in place of unbounded ones.
     ///
     /// # Errors
     /// The part has no bound.
@@ -545,8 +547,8 @@ impl BuilderNode {
     /// The components.
     fn children(&self) -> &[usize] {
         match self {
-            Self::Leaf(_) | Self::Open(OpenNode::Leaf(_)) => &[],
-            Self::Open(OpenNode::Complement(child)) => child.as_slice(),
+            Self::Leaf(_) | Self::Unbounded(UnboundedNode::Leaf(_)) => &[],
+            Self::Unbounded(UnboundedNode::Complement(child)) => child.as_slice(),
             Self::Operation { children, .. } => children,
             Self::Moved { child, .. } => std::slice::from_ref(child),
         }

@@ -3,7 +3,8 @@
 //! Other kernels need things that this one does not: seams along closed surfaces, edges shared by
 //! at most two faces, a vertex on every edge, and splines for the intersection curves of a torus or
 //! of two quadrics. [`two_manifold`] converts a boundary to that form. [`step`] writes it as ISO
-//! 10303, with splines within a stated distance of their curves. [`mesh`] writes triangles. STEP, glTF and 3MF have the colours of faces.
+//! 10303, with splines within a stated distance of their curves. [`mesh`] writes triangles. STEP, glTF
+//! and 3MF files have the colours of faces ([`FaceColours`]).
 
 mod face_colours;
 pub mod mesh;

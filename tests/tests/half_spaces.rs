@@ -1,8 +1,9 @@
-//! Solids without a bound: the same part of primitives, and of half-spaces and complements.
+//! Unbounded solids: the same part of primitives, and of half-spaces and complements.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
-use premio_csg::reader::{Format, ReadOptions, read};
+use premio_csg::reader::{Format, ReadError, ReadOptions, read};
+use premio_csg::tree::Tree;
 use proptest::prelude::*;
 use proptest::test_runner::Config;
 
@@ -100,15 +101,14 @@ fn part() -> impl Strategy<Value = Pair> {
     })
 }
 
-fn evaluated(text: &str) -> Evaluation {
+fn described(text: &str) -> Result<Tree, ReadError> {
     let text = format!("P = {text}");
-    let read = read(
-        "p.padl",
-        text.as_bytes(),
-        Format::Padl,
-        &ReadOptions::default(),
-    );
-    let tree = read.unwrap_or_else(|error| panic!("{text}: {error}")).tree;
+    let options = ReadOptions::default();
+    read("p.padl", text.as_bytes(), Format::Padl, &options).map(|description| description.tree)
+}
+
+fn evaluated(text: &str) -> Evaluation {
+    let tree = described(text).unwrap_or_else(|error| panic!("{text}: {error}"));
     evaluate(&tree, &EvaluationOptions::default()).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
@@ -126,29 +126,23 @@ proptest! {
     }
 }
 
-/// The message of a description that has no bound.
+/// The message of an unbounded part.
 fn refusal(text: &str) -> String {
-    let text = format!("P = {text}");
-    let read = read(
-        "p.padl",
-        text.as_bytes(),
-        Format::Padl,
-        &ReadOptions::default(),
-    );
-    read.err()
+    described(text)
+        .err()
         .map_or_else(String::new, |error| error.to_string())
 }
 
 #[test]
-fn a_part_without_a_bound_is_refused_with_a_direction() {
+fn an_unbounded_part_is_refused_with_a_direction() {
     for (text, toward) in [
         ("HALF(0,0,1)", "toward -z"),
         ("HALF(1,0,0) INT HALF(0,1,0) INT HALF(0,0,1)", "toward -x"),
         ("ICYL(R=2) AT (ROTY=90)", "toward +x"),
         ("ICYL(R=2) AT (ROTX=90) INT HALF(0,1,0,5)", "toward -y"),
         ("ICON(SLOPE=1/4) DIF SPH(R=3)", "toward +z"),
-        ("OUT(BLO(X=1,Y=1,Z=1))", "on any side"),
-        ("SPH(R=2) UN OUT(SPH(R=5))", "on any side"),
+        ("OUT(BLO(X=1,Y=1,Z=1))", "on every side"),
+        ("SPH(R=2) UN OUT(SPH(R=5))", "on every side"),
         (
             "SPH(R=1) AT (MOVX=5) UN ICON(SLOPE=1) AT (ROTX=180)",
             "toward -z",
@@ -159,7 +153,7 @@ fn a_part_without_a_bound_is_refused_with_a_direction() {
     }
 }
 
-/// Half-spaces that have a point, a line or nothing in common make an empty part, or one without a bound.
+/// Half-spaces that have a point, a line or nothing in common make an empty or an unbounded part.
 #[test]
 fn half_spaces_without_a_common_inner_point_have_an_end() {
     let [x, y, z] = ["1,0,0", "0,1,0", "0,0,1"].map(|axis| {
@@ -174,7 +168,7 @@ fn half_spaces_without_a_common_inner_point_have_an_end() {
         volume("HALF(1,0,0,-1) INT HALF(-1,0,0,-1) INT SPH(R=4)"),
         0.0
     );
-    assert!(refusal(&x).contains("without a bound"));
+    assert!(refusal(&x).contains("unbounded"));
 }
 
 /// Planes and axes at small angles: the part reaches far, and is bounded.

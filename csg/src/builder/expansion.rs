@@ -49,7 +49,9 @@ impl<'a> Expansion<'a> {
                     self.tree.colours.insert(leaf, colour);
                 }
             }
-            BuilderNode::Open(_) => return Err(TreeError::Unbounded(UnboundedSide::Everywhere)),
+            BuilderNode::Unbounded(_) => {
+                return Err(TreeError::Unbounded(UnboundedSide::Everywhere));
+            }
             BuilderNode::Operation { op, children } => self.expand_operation(*op, children, &task),
             BuilderNode::Moved {
                 child, placement, ..

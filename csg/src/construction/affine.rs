@@ -35,7 +35,7 @@ pub fn mapped(
     for (index, node) in tree.nodes().iter().enumerate().rev() {
         images[index] = match node {
             TreeNode::Leaf(placed) => {
-                let around = builder.brush();
+                let around = builder.current_colour();
                 builder.set_colour(around.or(tree.colour(NodeId(index))));
                 let image = of_leaf(builder, placed, map);
                 builder.set_colour(around);

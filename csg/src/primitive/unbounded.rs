@@ -1,11 +1,11 @@
-//! Solids without a bound: half-spaces of planes, cylinders and cones.
+//! Unbounded solids: half-spaces of planes, cylinders and cones.
 
 use premio_kernel::number::rational::Rational;
 
 use super::{Dimension, PrimitiveError, positive};
 use crate::polyhedron::{HalfSpace, SpacePoint};
 
-/// A solid without a bound, in its own frame. Other solids of a part must bound it.
+/// An unbounded solid, in its own frame. Other solids of a part must bound it.
 ///
 /// The outside of a bounded solid is its complement, [`Builder::complement`].
 ///

@@ -62,7 +62,7 @@ pub enum WriteError {
 /// Numbers are written with all their digits. What a language cannot represent is written to f64
 /// precision: in `.padl` rotations about other than coordinate axes, in `.csg` rotations by other
 /// than quarters of a degree about coordinate axes, in `.csg` and `.json` numbers without a finite
-/// decimal. A bounded solid is written in place of one without a bound.
+/// decimal. A bounded solid is written in place of an unbounded one.
 ///
 /// # Errors
 /// The solid belongs to another builder, has too many primitives or no bound, the language is read only or
@@ -75,7 +75,7 @@ pub fn write(builder: &Builder, part: SolidId, format: Format) -> Result<String,
     if leaves > MAX_LEAVES {
         return Err(WriteError::TooManyLeaves { leaves });
     }
-    if builder.is_open(part) {
+    if builder.has_unbounded(part) {
         let (bounded, part) = builder.bounded(part).map_err(WriteError::Unbounded)?;
         return write(&bounded, part, format);
     }
@@ -123,7 +123,7 @@ fn has_primitive(builder: &Builder, part: SolidId, is_it: impl Fn(&Primitive) ->
         }
         match builder.draft(draft) {
             BuilderNode::Leaf(primitive) if is_it(primitive) => return true,
-            BuilderNode::Leaf(_) | BuilderNode::Open(_) => {}
+            BuilderNode::Leaf(_) | BuilderNode::Unbounded(_) => {}
             BuilderNode::Operation { children, .. } => ahead.extend(children),
             BuilderNode::Moved { child, .. } => ahead.push(*child),
         }
@@ -315,8 +315,8 @@ fn enter(
                 }
             }
         }
-        // Consecutive placements are merged, and solids without a bound were replaced.
-        BuilderNode::Moved { .. } | BuilderNode::Open(_) => {}
+        // Consecutive placements are merged, and unbounded solids were replaced.
+        BuilderNode::Moved { .. } | BuilderNode::Unbounded(_) => {}
     }
 }
 

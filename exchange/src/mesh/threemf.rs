@@ -42,17 +42,17 @@ fn written(facets: &Facets, colours: &FaceColours, name: &str, unit: Unit) -> Op
     let mut model = ModelBuilder::new(unit, true);
     model.add_metadata("Title", Some(&name));
     model.add_build(None).ok()?;
-    let palette = Palette::new(facets, colours, &mut model);
+    let materials = Materials::new(facets, colours, &mut model);
     for of_solid in facets.solids() {
         let id = model.add_mesh_object(|object| {
             object.object_type(ObjectType::Model).name(&name);
-            let material = |facet: &Facet| palette.place(colours.of(facet.face));
-            if let (Some(palette), Some(first)) = (&palette.id, of_solid.first()) {
-                // The property of triangles that name none.
-                object.pid(*palette).pindex(material(first));
+            let material = |facet: &Facet| materials.place(colours.of(facet.face));
+            if let (Some(materials), Some(first)) = (&materials.id, of_solid.first()) {
+                // The default of triangles without a property of their own.
+                object.pid(*materials).pindex(material(first));
             }
             add(object, facets, of_solid, |facet| {
-                let id = palette.id?;
+                let id = materials.id?;
                 Some((id, material(facet)))
             });
             Ok(())
@@ -63,17 +63,17 @@ fn written(facets: &Facets, colours: &FaceColours, name: &str, unit: Unit) -> Op
     let mut model = model.build().ok()?;
     // The builder numbers materials and objects separately, and a file has one numbering. It also
     // requires an extension that it does not declare; materials are of the core.
-    for materials in &mut model.resources.basematerials {
-        materials.id = PALETTE;
+    for group in &mut model.resources.basematerials {
+        group.id = MATERIALS_ID;
     }
-    if palette.id.is_some() {
+    if materials.id.is_some() {
         model.requiredextensions = Default::default();
     }
     package.set_root_model(model);
     let mut bytes = Cursor::new(Vec::new());
     package.build().ok()?.write(&mut bytes).ok()?;
     let bytes = bytes.into_inner();
-    match palette.id {
+    match materials.id {
         Some(_) => with_materials_first(&bytes),
         None => Some(bytes),
     }
@@ -110,29 +110,29 @@ fn reordered(model: &str) -> Option<String> {
 }
 
 /// The materials of the faces.
-struct Palette {
+struct Materials {
     /// The resource; `None` if no face has a colour.
     id: Option<ResourceId>,
     colours: Vec<Option<Colour>>,
 }
 
-impl Palette {
+impl Materials {
     fn new(facets: &Facets, colours: &FaceColours, model: &mut ModelBuilder) -> Self {
         let all = facets.facets.iter().map(|facet| colours.of(facet.face));
         let used: BTreeSet<Option<Colour>> = all.collect();
         let colours: Vec<Option<Colour>> = used.into_iter().collect();
         let has_any = colours.iter().any(Option::is_some);
         if has_any {
-            model.add_base_materials(|materials| {
+            model.add_base_materials(|group| {
                 for colour in &colours {
                     let shown = colour.unwrap_or(NO_COLOUR).to_string();
                     let name = if colour.is_some() { &shown } else { "none" };
-                    materials.add_base(name, &shown);
+                    group.add_base(name, &shown);
                 }
             });
         }
         Self {
-            id: has_any.then_some(PALETTE),
+            id: has_any.then_some(MATERIALS_ID),
             colours,
         }
     }
@@ -145,7 +145,7 @@ impl Palette {
 }
 
 /// The number of the materials, which no object has.
-const PALETTE: ResourceId = 1 << 30;
+const MATERIALS_ID: ResourceId = 1 << 30;
 
 /// The colour of faces without one, where others have one.
 const NO_COLOUR: Colour = Colour {

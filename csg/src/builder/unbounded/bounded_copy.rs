@@ -1,10 +1,10 @@
-//! The copy of a part with bounded solids in place of those without a bound.
+//! The copy of a part with bounded solids in place of unbounded ones.
 
 use super::clipping::{clipped, polytope};
 use super::enclosure::Ball;
 use super::half_space::half_space;
 use super::region::Region;
-use super::{Builder, BuilderNode, OpenNode, SolidId};
+use super::{Builder, BuilderNode, SolidId, UnboundedNode};
 use crate::polyhedron::HalfSpace;
 use crate::tree::Operation;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ impl FlatIntersection {
                 BuilderNode::Operation {
                     op: Operation::Intersection,
                     children,
-                } if builder.open[child] => open.extend(children.iter().rev()),
+                } if builder.has_unbounded_part[child] => open.extend(children.iter().rev()),
                 _ => match half_space(builder, child) {
                     Some(half_space) => flat.half_spaces.push(half_space),
                     None => flat.rest.push(child),
@@ -49,7 +49,9 @@ fn components(builder: &Builder, top: usize) -> BTreeMap<usize, Option<FlatInter
             BuilderNode::Operation {
                 op: Operation::Intersection,
                 children,
-            } if builder.open[draft] => Some(FlatIntersection::new(builder, children)),
+            } if builder.has_unbounded_part[draft] => {
+                Some(FlatIntersection::new(builder, children))
+            }
             _ => None,
         };
         match &flat {
@@ -89,10 +91,10 @@ pub(super) fn bounded_copy(
             }
             (BuilderNode::Operation { op, children }, None) => to.operation(*op, &all(children)),
             (BuilderNode::Leaf(primitive), _) => to.primitive(primitive.clone()),
-            (BuilderNode::Open(OpenNode::Leaf(primitive)), _) => {
+            (BuilderNode::Unbounded(UnboundedNode::Leaf(primitive)), _) => {
                 clipped(&mut to, primitive, &local()?)?
             }
-            (BuilderNode::Open(OpenNode::Complement(_)), _) => SolidId::EMPTY,
+            (BuilderNode::Unbounded(UnboundedNode::Complement(_)), _) => SolidId::EMPTY,
             (
                 BuilderNode::Moved {
                     child,

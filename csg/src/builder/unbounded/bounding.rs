@@ -3,10 +3,10 @@
 //! Beyond a cube about the origin a point is u/w with u on the surface of the unit cube and w from 0 to
 //! the inverse of the cube's half edge. So finitely many cells show that nothing is out there.
 
-use super::enclosure::BoundingCell;
-use super::form::Cell;
+use super::linear_form::Cell;
 use super::region::{Region, RegionInCell};
 use crate::builder::UnboundedSide;
+use premio_kernel::geometry::bounds::Aabb;
 
 /// The number of cubes that are tried, each of four times the size.
 const CUBES: i32 = 11;
@@ -25,12 +25,18 @@ const HALVINGS: u32 = 3;
 ///
 /// # Errors
 /// There is none.
-pub(super) fn bounds(region: &Region) -> Result<Option<BoundingCell>, UnboundedSide> {
+pub(super) fn bounds(region: &Region) -> Result<Option<Aabb>, UnboundedSide> {
     let mut beyond = UnboundedSide::Everywhere;
     for power in 0..CUBES {
         let half = 2.0 * region.reach() * 4.0_f64.powi(power);
         match found_beyond(region, half) {
-            None => return Ok(shrunk(region, BoundingCell([[-half, half]; 3]))),
+            None => {
+                let cube = Aabb {
+                    min: [-half; 3],
+                    max: [half; 3],
+                };
+                return Ok(shrunk(region, cube));
+            }
             Some(side) => beyond = side,
         }
     }
@@ -121,26 +127,25 @@ fn toward(cell: &Cell) -> UnboundedSide {
     UnboundedSide::Toward(middle.map(|x| (100.0 * x / size).round() as i16))
 }
 
-/// The box around the parts of a box that may contain points, again and again until it hardly gets
-/// smaller.
-fn shrunk(region: &Region, start: BoundingCell) -> Option<BoundingCell> {
+/// The box around the parts of a box that may contain points. It is shrunk until it hardly gets smaller.
+fn shrunk(region: &Region, start: Aabb) -> Option<Aabb> {
     let mut known = start;
     loop {
         let smaller = occupied(region, &known)?;
-        let is_small = smaller.size() <= SMALL * region.reach();
-        if is_small || smaller.size() > 0.5 * known.size() {
+        let is_small = smaller.diagonal() <= SMALL * region.reach();
+        if is_small || smaller.diagonal() > 0.5 * known.diagonal() {
             return Some(smaller);
         }
         known = smaller;
     }
 }
 
-/// The box around the cells of a box that may contain points.
-fn occupied(region: &Region, whole: &BoundingCell) -> Option<BoundingCell> {
-    let mut found: Option<BoundingCell> = None;
+/// The box around the cells of a box that may contain points; `None` if there are none.
+fn occupied(region: &Region, whole: &Aabb) -> Option<Aabb> {
+    let mut found: Option<Aabb> = None;
     let mut open = vec![(*whole, 0, region.clone())];
     while let Some((cell, depth, region)) = open.pop() {
-        let u = cell.0;
+        let u = [0, 1, 2].map(|i| [cell.min[i], cell.max[i]]);
         let rest = match region.within(&Cell { u, w: [1.0; 2] }) {
             RegionInCell::Outside => continue,
             RegionInCell::Unknown(rest) if depth < HALVINGS => rest,
@@ -149,12 +154,15 @@ fn occupied(region: &Region, whole: &BoundingCell) -> Option<BoundingCell> {
                 continue;
             }
         };
-        let [x, y, z] = u.map(halves);
-        for x in x {
-            for (y, z) in y.into_iter().flat_map(|y| z.map(|z| (y, z))) {
-                open.push((BoundingCell([x, y, z]), depth + 1, rest.clone()));
-            }
-        }
+        let halves = u.map(halves);
+        open.extend((0..8_usize).map(|octant| {
+            let range = |i: usize| halves[i][octant >> i & 1];
+            let part = Aabb {
+                min: [0, 1, 2].map(|i| range(i)[0]),
+                max: [0, 1, 2].map(|i| range(i)[1]),
+            };
+            (part, depth + 1, rest.clone())
+        }));
     }
     found
 }

@@ -1,6 +1,6 @@
-//! Bounded solids that are the same as one without a bound inside a ball.
+//! Bounded solids that replace unbounded ones: inside a ball they are the same.
 
-use super::enclosure::{Ball, BoundingCell, LARGER};
+use super::enclosure::{Ball, LARGER};
 use crate::builder::{Builder, SolidId};
 use crate::polyhedron::{HalfSpace, Polyhedron, SpacePoint};
 use crate::primitive::{Primitive, UnboundedPrimitive};
@@ -8,8 +8,7 @@ use crate::transform::{Transform, along};
 use premio_kernel::number::rational::to_f64;
 use std::sync::Arc;
 
-/// A solid that is the same as one without a bound inside a ball; `None` if its numbers are beyond the
-/// range of f64.
+/// The bounded solid that replaces an unbounded one; `None` if its numbers are beyond the range of f64.
 pub(super) fn clipped(
     builder: &mut Builder,
     primitive: &UnboundedPrimitive,
@@ -56,14 +55,15 @@ pub(super) fn clipped(
     }
 }
 
-/// Where a ball is.
+/// The side of a surface on which all of a ball lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     Inside,
     Outside,
 }
 
-/// The side on which a ball is all, by the level of its centre, which is negative inside.
+/// The side on which all of a ball lies, by the distance of its centre from the surface, which is negative
+/// inside; `None` if the ball may intersect the surface.
 fn side(level: f64, radius: f64) -> Option<Side> {
     match level.abs() > radius {
         true if level < 0.0 => Some(Side::Inside),
@@ -72,7 +72,7 @@ fn side(level: f64, radius: f64) -> Option<Side> {
     }
 }
 
-/// A solid for one that contains a ball, or has no point of it.
+/// The bounded solid that replaces one whose surface does not intersect a ball.
 fn covered(builder: &mut Builder, side: Side, ball: &Ball) -> Option<SolidId> {
     if side == Side::Outside {
         return Some(SolidId::EMPTY);
@@ -91,8 +91,8 @@ pub(super) fn polytope(
     half_spaces: &[HalfSpace],
     ball: &Ball,
 ) -> Option<SolidId> {
-    let BoundingCell(ranges) = ball.cube();
-    let [x, y, z] = ranges.map(|range| ball.rounded(range));
+    let cube = ball.cube();
+    let [x, y, z] = [0, 1, 2].map(|i| ball.rounded([cube.min[i], cube.max[i]]));
     let Some(polytope) = Polyhedron::intersection(&[x?, y?, z?], half_spaces) else {
         return Some(SolidId::EMPTY);
     };

@@ -1,19 +1,19 @@
 //! The removal of complements by De Morgan's laws.
 
 use super::half_space::half_space;
-use super::{Builder, BuilderNode, OpenNode, SolidId};
+use super::{Builder, BuilderNode, SolidId, UnboundedNode};
 use crate::polyhedron::HalfSpace;
 use crate::primitive::UnboundedPrimitive;
 use crate::tree::Operation;
 
-/// A solid, or the outside of it.
+/// A solid, or its complement.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Signed {
+pub(super) struct SignedSolid {
     pub solid: SolidId,
     pub is_complement: bool,
 }
 
-impl Signed {
+impl SignedSolid {
     fn outside(self) -> Self {
         Self {
             is_complement: !self.is_complement,
@@ -21,7 +21,7 @@ impl Signed {
         }
     }
 
-    /// The same; the outside of a half-space as the half-space on the other side of its plane.
+    /// The same, with the complement of a half-space as the half-space on the other side of its plane.
     fn reversed(self, builder: &mut Builder) -> Self {
         let draft = builder.draft_of(self.solid).filter(|_| self.is_complement);
         let Some(own) = draft.and_then(|draft| half_space(builder, draft)) else {
@@ -37,7 +37,7 @@ impl Signed {
     }
 }
 
-impl From<SolidId> for Signed {
+impl From<SolidId> for SignedSolid {
     fn from(solid: SolidId) -> Self {
         Self {
             solid,
@@ -47,9 +47,9 @@ impl From<SolidId> for Signed {
 }
 
 /// A copy of a draft without complements, in another builder.
-pub(super) fn without_complements(from: &Builder, top: usize) -> (Builder, Signed) {
+pub(super) fn without_complements(from: &Builder, top: usize) -> (Builder, SignedSolid) {
     let mut to = Builder::new();
-    let mut copies: Vec<Signed> = Vec::with_capacity(top + 1);
+    let mut copies: Vec<SignedSolid> = Vec::with_capacity(top + 1);
     for (draft, is_used) in used(from, top).into_iter().enumerate() {
         if !is_used {
             copies.push(SolidId::EMPTY.into());
@@ -58,13 +58,16 @@ pub(super) fn without_complements(from: &Builder, top: usize) -> (Builder, Signe
         to.set_colour(from.colours[draft]);
         let copy = match from.draft(draft) {
             BuilderNode::Leaf(primitive) => to.primitive(primitive.clone()).into(),
-            BuilderNode::Open(OpenNode::Leaf(primitive)) => to.unbounded(primitive.clone()).into(),
-            BuilderNode::Open(OpenNode::Complement(child)) => {
+            BuilderNode::Unbounded(UnboundedNode::Leaf(primitive)) => {
+                to.unbounded(primitive.clone()).into()
+            }
+            BuilderNode::Unbounded(UnboundedNode::Complement(child)) => {
                 let child = child.map_or(SolidId::EMPTY.into(), |child| copies[child]);
                 child.outside()
             }
             BuilderNode::Operation { op, children } => {
-                let children: Vec<Signed> = children.iter().map(|&child| copies[child]).collect();
+                let children: Vec<SignedSolid> =
+                    children.iter().map(|&child| copies[child]).collect();
                 combined(&mut to, *op, &children)
             }
             BuilderNode::Moved {
@@ -74,7 +77,7 @@ pub(super) fn without_complements(from: &Builder, top: usize) -> (Builder, Signe
             } => {
                 let inner = copies[*child];
                 let placings = from.placings(*entry);
-                Signed {
+                SignedSolid {
                     solid: to.placed(inner.solid, placement.clone(), placings),
                     ..inner
                 }
@@ -101,25 +104,26 @@ fn used(builder: &Builder, top: usize) -> Vec<bool> {
 }
 
 /// An operation on solids and complements.
-fn combined(builder: &mut Builder, op: Operation, operands: &[Signed]) -> Signed {
+fn combined(builder: &mut Builder, op: Operation, operands: &[SignedSolid]) -> SignedSolid {
     let operands = operands.iter().enumerate().map(|(i, &operand)| {
-        // A - B is what A and the outside of B have in common, and A + B is what is outside of all
-        // that the outsides of A and B have in common.
+        // A - B is the intersection of A and the complement of B. A + B is the complement of the
+        // intersection of the complements of A and B.
         match op {
             Operation::Intersection => operand,
             Operation::Difference if i == 0 => operand,
             Operation::Difference | Operation::Union => operand.outside(),
         }
     });
-    let operands: Vec<Signed> = operands.collect();
+    let operands: Vec<SignedSolid> = operands.collect();
     let operands = operands
         .into_iter()
         .map(|operand| operand.reversed(builder));
-    let (outside, inside): (Vec<Signed>, Vec<Signed>) = operands.partition(|o| o.is_complement);
+    let (outside, inside): (Vec<SignedSolid>, Vec<SignedSolid>) =
+        operands.partition(|o| o.is_complement);
     let [outside, inside] =
         [outside, inside].map(|all| all.iter().map(|o| o.solid).collect::<Vec<SolidId>>());
     let common = match inside.is_empty() {
-        true => Signed::from(builder.operation(Operation::Union, &outside)).outside(),
+        true => SignedSolid::from(builder.operation(Operation::Union, &outside)).outside(),
         false => {
             let common = builder.operation(Operation::Intersection, &inside);
             let all: Vec<SolidId> = [vec![common], outside].concat();

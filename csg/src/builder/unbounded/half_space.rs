@@ -1,6 +1,6 @@
 //! Drafts that are half-spaces of planes, in their positions.
 
-use super::{Builder, BuilderNode, OpenNode};
+use super::{Builder, BuilderNode, UnboundedNode};
 use crate::builder::Placement;
 use crate::polyhedron::{HalfSpace, dot};
 use crate::primitive::UnboundedPrimitive;
@@ -8,15 +8,15 @@ use crate::primitive::UnboundedPrimitive;
 /// The half-space that a draft is, if it is one of a plane.
 pub(super) fn half_space(builder: &Builder, draft: usize) -> Option<HalfSpace> {
     match builder.draft(draft) {
-        BuilderNode::Open(OpenNode::Leaf(UnboundedPrimitive::HalfSpace(half_space))) => {
+        BuilderNode::Unbounded(UnboundedNode::Leaf(UnboundedPrimitive::HalfSpace(half_space))) => {
             Some(half_space.clone())
         }
         BuilderNode::Moved {
             child, placement, ..
         } => match builder.draft(*child) {
-            BuilderNode::Open(OpenNode::Leaf(UnboundedPrimitive::HalfSpace(half_space))) => {
-                Some(placed(half_space, placement))
-            }
+            BuilderNode::Unbounded(UnboundedNode::Leaf(UnboundedPrimitive::HalfSpace(
+                half_space,
+            ))) => Some(placed(half_space, placement)),
             _ => None,
         },
         _ => None,

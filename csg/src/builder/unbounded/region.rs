@@ -1,9 +1,9 @@
 //! The set of points of a part, and whether cells are inside or outside.
 
 use super::enclosure::Ball;
-use super::form::{Cell, LinearForm, square};
+use super::linear_form::{Cell, LinearForm, square};
 use crate::builder::expansion::Expansion;
-use crate::builder::{Builder, BuilderNode, MAX_MOTION_BITS, OpenNode, Placement, TreeError};
+use crate::builder::{Builder, BuilderNode, MAX_MOTION_BITS, Placement, TreeError, UnboundedNode};
 use crate::polyhedron::HalfSpace;
 use crate::primitive::UnboundedPrimitive;
 use crate::ray_casting::RayOracle;
@@ -42,7 +42,7 @@ enum RegionNode {
     Operation { op: Operation, children: Vec<usize> },
 }
 
-/// How a node lies to a cell.
+/// The relation of a node to a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Status {
     Inside,
@@ -51,7 +51,7 @@ enum Status {
     Unknown(usize),
 }
 
-/// A use of a solid without a bound, or of an intersection with such a solid.
+/// A use of an unbounded solid, or of an intersection with such a solid.
 #[derive(Debug, Clone)]
 struct UnboundedUse {
     draft: usize,
@@ -95,7 +95,7 @@ pub(super) struct Region {
 pub(super) enum RegionInCell {
     Inside,
     Outside,
-    /// What decides in the cell.
+    /// The nodes on which the cell depends.
     Unknown(Region),
 }
 
@@ -105,7 +105,7 @@ enum Step {
     Combine { op: Operation, count: usize },
 }
 
-/// One placement after another.
+/// A placement followed by another one.
 fn moved(inner: &Placement, outer: &Placement) -> Result<Rc<Placement>, TreeError> {
     let both = inner.then(outer);
     let bits = both.bits();
@@ -142,12 +142,12 @@ impl Region {
         let mut done: Vec<usize> = Vec::new();
         while let Some(step) = steps.pop() {
             match step {
-                Step::Enter(draft, placement) if !builder.open[draft] => {
+                Step::Enter(draft, placement) if !builder.has_unbounded_part[draft] => {
                     let shape = bounded_shape(builder, draft, Rc::unwrap_or_clone(placement))?;
                     done.push(region.add(RegionNode::Leaf(shape)));
                 }
                 Step::Enter(draft, placement) => match builder.draft(draft) {
-                    BuilderNode::Open(OpenNode::Leaf(primitive)) => {
+                    BuilderNode::Unbounded(UnboundedNode::Leaf(primitive)) => {
                         let shape = region.place(draft, primitive, &placement);
                         done.push(region.add(RegionNode::Leaf(shape)));
                     }
@@ -165,7 +165,8 @@ impl Region {
                         placement: inner,
                         ..
                     } => steps.push(Step::Enter(*child, moved(inner, &placement)?)),
-                    BuilderNode::Leaf(_) | BuilderNode::Open(OpenNode::Complement(_)) => {}
+                    BuilderNode::Leaf(_) | BuilderNode::Unbounded(UnboundedNode::Complement(_)) => {
+                    }
                 },
                 Step::Combine { op, count } => {
                     let children = done.split_off(done.len().saturating_sub(count));
@@ -247,8 +248,7 @@ impl Region {
         boxes.filter(|far| far.is_finite()).fold(0.0, f64::max)
     }
 
-    /// The distance from the origin to which the solids reach, or what is closest of those without a
-    /// bound.
+    /// The distance from the origin within which the solids are, or the closest points of unbounded ones.
     pub fn reach(&self) -> f64 {
         match self.reach > 0.0 {
             true => self.reach,
@@ -330,8 +330,8 @@ impl Region {
         }
     }
 
-    /// A ball in the frame of a draft that contains a ball of space, for every use of the draft;
-    /// `None` if it has none.
+    /// A ball in the frame of a draft that contains a ball of space in every use of the draft; `None` if
+    /// the draft is not used.
     pub fn local_ball(&self, draft: usize, ball: &Ball) -> Option<Ball> {
         let uses = self.uses.iter().filter(|used| used.draft == draft);
         let balls = uses.map(|used| Ball {

@@ -1,4 +1,4 @@
-//! Solids without a bound in `.json`.
+//! Unbounded solids in `.json`.
 
 use super::super::error::SpannedError;
 use super::super::number::bad_length;

@@ -1,4 +1,4 @@
-//! Figures of the plane, solids of them, and solids without a bound: their evaluation.
+//! Figures of the plane, solids of them, and unbounded solids: their evaluation.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -88,7 +88,7 @@ impl Given {
     }
 }
 
-/// A solid without a bound.
+/// An unbounded solid.
 fn unbounded(
     construction: Construction,
     given: &Given,

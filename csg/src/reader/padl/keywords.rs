@@ -118,7 +118,7 @@ impl Function {
     }
 }
 
-/// A word with arguments that makes a figure, a solid of a figure, or a solid without a bound.
+/// A word with arguments that makes a figure, a solid of a figure, or an unbounded solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Construction {
     Rectangle,

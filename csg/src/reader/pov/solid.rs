@@ -15,9 +15,9 @@ use crate::primitive::{Primitive, PrimitiveError, UnboundedPrimitive};
 use crate::transform::{Transform, TransformStep};
 use crate::tree::Operation;
 
-/// The shape of an object.
+/// An object.
 #[derive(Debug, Clone)]
-pub(super) enum Shape {
+pub(super) enum Object {
     /// An axis-aligned box, by its minimum and maximum corners. It may be scaled differently along
     /// the axes.
     Box(Box<[Vector; 2]>),
@@ -26,27 +26,15 @@ pub(super) enum Shape {
     Refused(Box<SpannedError>),
 }
 
-/// An object.
-#[derive(Debug, Clone)]
-pub(super) struct Object {
-    pub(super) shape: Shape,
-}
-
-impl From<Shape> for Object {
-    fn from(shape: Shape) -> Self {
-        Self { shape }
-    }
-}
-
 impl From<SolidId> for Object {
     fn from(part: SolidId) -> Self {
-        Shape::Part(part).into()
+        Self::Part(part)
     }
 }
 
 impl From<SpannedError> for Object {
     fn from(fault: SpannedError) -> Self {
-        Shape::Refused(Box::new(fault)).into()
+        Self::Refused(Box::new(fault))
     }
 }
 
@@ -75,7 +63,7 @@ pub(super) fn block(a: Vector, b: Vector, span: Range<usize>) -> Result<Object, 
             return Err(SpannedError::input(span, "a box without volume", expected));
         }
     }
-    Ok(Shape::Box(Box::new([least, greatest])).into())
+    Ok(Object::Box(Box::new([least, greatest])))
 }
 
 pub(super) fn sphere(
@@ -137,34 +125,29 @@ pub(super) fn plane(
 }
 
 impl Object {
-    /// The solid of an object.
-    pub(super) fn solid(self, builder: &mut Builder) -> Result<SolidId, SpannedError> {
-        self.shape.part(builder)
-    }
-
     /// The outside of an object.
     pub(super) fn inverse(self, builder: &mut Builder) -> Self {
-        self.changed(|shape| match shape.part(builder) {
+        self.changed(|object| match object.solid(builder) {
             Ok(part) => builder.complement(part).into(),
             Err(fault) => fault.into(),
         })
     }
 
     /// Applies a change unless the object is unsupported.
-    fn changed(self, change: impl FnOnce(Shape) -> Object) -> Self {
-        match self.shape {
-            Shape::Refused(_) => self,
-            shape => change(shape),
+    fn changed(self, change: impl FnOnce(Self) -> Self) -> Self {
+        match self {
+            Self::Refused(_) => self,
+            object => change(object),
         }
     }
 
     pub(super) fn translated(self, builder: &mut Builder, by: Vector) -> Self {
-        self.changed(|shape| match shape {
-            Shape::Box(corners) => {
+        self.changed(|object| match object {
+            Object::Box(corners) => {
                 let add = |corner: Vector| super::super::frame::sum(&corner, &by);
-                Shape::Box(Box::new(corners.map(add))).into()
+                Self::Box(Box::new(corners.map(add)))
             }
-            shape => moved(builder, shape, Transform::shift(by)),
+            object => moved(builder, object, Transform::shift(by)),
         })
     }
 
@@ -179,7 +162,7 @@ impl Object {
         }
         match moves.steps() {
             [] => self,
-            _ => self.changed(|shape| moved(builder, shape, moves)),
+            _ => self.changed(|object| moved(builder, object, moves)),
         }
     }
 
@@ -188,30 +171,30 @@ impl Object {
             let found = "a scale of zero";
             return SpannedError::input(span, found, "factors other than zero").into();
         }
-        self.changed(|shape| match shape {
-            Shape::Box(corners) => {
+        self.changed(|object| match object {
+            Object::Box(corners) => {
                 let [a, b] = *corners;
                 let scale = |corner: Vector| std::array::from_fn(|i| &corner[i] * &by[i]);
                 block(scale(a), scale(b), span).unwrap_or_else(Object::from)
             }
-            shape => whole_scale(builder, shape, &by, span),
+            object => whole_scale(builder, object, &by, span),
         })
     }
 }
 
-fn moved(builder: &mut Builder, shape: Shape, moves: Transform) -> Object {
-    match shape.part(builder) {
+fn moved(builder: &mut Builder, object: Object, moves: Transform) -> Object {
+    match object.solid(builder) {
         Ok(part) => builder.moved(part, moves).into(),
         Err(fault) => fault.into(),
     }
 }
 
 /// A scale, possibly with mirrors.
-fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usize>) -> Object {
+fn whole_scale(builder: &mut Builder, object: Object, by: &Vector, span: Range<usize>) -> Object {
     let size = |x: &Rational| if *x < Rational::ZERO { -x } else { x.clone() };
     let factor = size(&by[0]);
     if by.iter().any(|x| size(x) != factor) {
-        let part = match shape.part(builder) {
+        let part = match object.solid(builder) {
             Ok(part) => part,
             Err(fault) => return fault.into(),
         };
@@ -220,7 +203,7 @@ fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usi
             Err(error) => construction_error(&error, &span).into(),
         };
     }
-    let part = match shape.part(builder) {
+    let part = match object.solid(builder) {
         Ok(part) => builder.scaled(part, factor),
         Err(fault) => return fault.into(),
     };
@@ -244,8 +227,9 @@ fn whole_scale(builder: &mut Builder, shape: Shape, by: &Vector, span: Range<usi
     builder.moved(part, moves).into()
 }
 
-impl Shape {
-    fn part(self, builder: &mut Builder) -> Result<SolidId, SpannedError> {
+impl Object {
+    /// The solid.
+    pub(super) fn solid(self, builder: &mut Builder) -> Result<SolidId, SpannedError> {
         match self {
             Self::Part(part) => Ok(part),
             Self::Refused(fault) => Err(*fault),
@@ -260,7 +244,7 @@ impl Shape {
 
 /// An operation on objects.
 pub(super) fn combined(builder: &mut Builder, op: Operation, objects: Vec<Object>) -> Object {
-    let parts = objects.into_iter().map(|object| object.shape.part(builder));
+    let parts = objects.into_iter().map(|object| object.solid(builder));
     match parts.collect::<Result<Vec<SolidId>, SpannedError>>() {
         Ok(parts) => builder.operation(op, &parts).into(),
         Err(fault) => fault.into(),

@@ -191,7 +191,7 @@ fn what_is_not_ours() {
     assert_snapshot!(asc("put e tgc V {0 0 0} H {0 0 1} A {1 0 0} B {0 2 0} C {1 0 0} D {0 1 0}"), @"part:1:7: found `e`, a cone whose ends are not similar, expected similar ellipses at both ends");
     assert_snapshot!(asc("put t tor V {0 0 0} H {0 0 1} r_a 1 r_h 0"), @"part:1:7: found `t`, a solid of wrong size: the minor radius must be greater than zero, expected a solid of positive size");
     assert_snapshot!(asc("put a arb8 V1 {0 0 0} V2 {1 0 0} V3 {1 1 0} V4 {0 1 0} V5 {0 0 1} V6 {1 0 1} V7 {1 1 2} V8 {0 1 1}"), @"part:1:7: found `a`, a polyhedron of eight corners, expected a block or a right-angled wedge");
-    assert_snapshot!(asc("put h half N {0 0 1} d 5"), @"part:1:5: found a part without a bound toward +x, expected solids that bound it on every side");
+    assert_snapshot!(asc("put h half N {0 0 1} d 5"), @"part:1:5: found a part that is unbounded toward +x, expected solids that bound it on every side");
     assert_snapshot!(asc("put h half N {0 0 0} d 5"), @"part:1:7: found the normal (0, 0, 0), expected a normal of some length");
     assert_snapshot!(asc("put h extrude V {0 0 0}"), @"part:1:7: found `h`, an object of type `extrude`, expected `comb` or a solid that is exact here: arb8, ell, half, sph, tgc, rec, tor");
     assert_snapshot!(asc("put b ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\nput c comb tree {l b {2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1}}"), @"part:2:23: found a matrix that changes proportions or angles, expected a rigid motion, perhaps mirrored, perhaps the same scale in all directions");

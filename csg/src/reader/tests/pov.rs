@@ -131,7 +131,7 @@ fn planes() {
         let is_in_ball = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 9.0;
         is_in_ball && p[1] > -1.0 && (p[0] + p[2]) / 2.0_f64.sqrt() < 1.0
     });
-    assert_snapshot!(pov("plane { y, 1 }"), @"part:1:1: found a part without a bound toward +x, expected solids that bound it on every side");
+    assert_snapshot!(pov("plane { y, 1 }"), @"part:1:1: found a part that is unbounded toward +x, expected solids that bound it on every side");
     assert_snapshot!(pov("plane { 0*x, 1 }"), @"part:1:9: found the normal (0, 0, 0), expected a normal of some length");
 }
 
@@ -159,7 +159,7 @@ fn what_is_not_ours() {
     assert_snapshot!(pov("torus { 3, 1 scale <1, 2, 1> }"), @"part:1:20: found a map that changes the shape of revolutions, expected spheres, cylinders, cones, prisms or plane faces, or a scale equal in all directions");
     assert_snapshot!(pov("union { sphere { 0, 1 } box { -1, 1 clipped_by { sphere { 0, 1 } } } }"), @"part:1:37: found the modifier `clipped_by`, expected `translate`, `rotate`, or `scale` the same in all directions");
     assert_snapshot!(pov("cylinder { 0, y, 1 open }"), @"part:1:20: found the modifier `open`, expected `translate`, `rotate`, or `scale` the same in all directions");
-    assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found a part without a bound on any side, expected solids that bound it on every side");
+    assert_snapshot!(pov("sphere { 0, 1 inverse }"), @"part:1:1: found a part that is unbounded on every side, expected solids that bound it on every side");
     assert_snapshot!(pov("torus { 1, 0 }"), @"part:1:12: found the value 0, expected a minor radius greater than zero");
     assert_snapshot!(pov("box { 0, <1, 0, 1> }"), @"part:1:10: found a box without volume, expected two corners that differ along x, y and z");
     assert_snapshot!(pov("cylinder { y, y, 1 }"), @"part:1:18: found an axis without length, expected two points that differ");

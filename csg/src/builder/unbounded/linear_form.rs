@@ -1,4 +1,4 @@
-//! Linear forms of homogeneous points, and their ranges over cells.
+//! Linear forms of homogeneous coordinates, and their ranges over cells.
 
 use premio_kernel::number::interval::Interval;
 
@@ -9,7 +9,7 @@ pub(super) struct Cell {
     pub w: [f64; 2],
 }
 
-/// The part of its terms by which a form may be off in rounding.
+/// The rounding of a form, relative to its terms.
 const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
 /// The linear form a · u + b w.
@@ -20,7 +20,7 @@ pub(super) struct LinearForm {
 }
 
 impl LinearForm {
-    /// Its range over a cell, with what rounding may add.
+    /// Its range over a cell, enlarged by the rounding.
     pub fn over(&self, cell: &Cell) -> Interval<f64> {
         let terms = self.a.iter().zip(&cell.u).chain([(&self.b, &cell.w)]);
         let (mut middle, mut radius, mut size) = (0.0, 0.0, 0.0);

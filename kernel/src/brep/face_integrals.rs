@@ -6,6 +6,7 @@
 //! area, which lies between zero and that of the whole surface. Notation: P relative to a reference
 //! point, N the surface's normal, h = P·N.
 
+mod closed_form;
 mod density;
 mod ellipsoid_strip;
 mod face;

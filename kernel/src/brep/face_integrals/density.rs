@@ -1,5 +1,6 @@
 //! The integrand over a face, and the parameters from which its integrals start.
 
+use super::closed_form::over_ranges;
 use super::ground::{Between, Ground};
 use super::{Amid, Moments};
 use crate::brep::Brep;
@@ -55,6 +56,9 @@ impl<N: Float> Density<'_, N> {
 
     /// The integral over a range of u and of v.
     pub fn over(&self, [a, b]: [N; 2], range: [N; 2]) -> Moments<N> {
+        if let Some(moments) = over_ranges(&self.ground, [a, b], range) {
+            return moments;
+        }
         let between = Between {
             ground: &self.ground,
             range,

@@ -1,11 +1,13 @@
 //! Sums around the boundary of a face, by Green's theorem.
 
 use super::Moments;
+use super::closed_form::along_edge;
 use super::density::{Density, add};
 use super::ground::{OnEdge, RoundedEdge};
 use super::pole_turns::pole_turns;
 use crate::brep::Brep;
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
+use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -62,42 +64,13 @@ fn loop_sum<N: Float>(
     density: &Density<'_, N>,
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> LoopSum<N> {
-    let [a, v, x, y, z] = density.floor;
-    let floor = [a, v, x, y, z, density.amid.part()];
     let start = density.start(brep, coedges);
     let mut total = [N::ZERO; 6];
     for &c in coedges {
-        let coedge = brep.topology.coedge(c);
-        let curve = brep.curve(coedge.edge);
-        let rounded_curve = density.rounded_f64.as_ref().map(|_| curve.to_f64());
-        let [lo, hi] = brep.range(coedge.edge);
-        let mut breaks = curve.breaks(lo, hi);
-        breaks.extend(marks(c));
-        breaks.sort_by(N::total_cmp);
-        let sign = coedge.sense.sign::<N>();
-        // The tolerance is shared among the pieces; for f64 it is their rounding.
-        let floor = match N::IS_DOUBLE {
-            true => floor,
-            false => floor.map(|f| f / N::from_f64(breaks.len() as f64)),
-        };
-        for pair in breaks.windows(2) {
-            // The midpoint determines on which side of a cut the piece lies.
-            let middle = curve.point(N::HALF * (pair[0] + pair[1]));
-            let [_, near] = density.ground.parameters(&middle);
-            let on_edge = OnEdge {
-                ground: &density.ground,
-                curve,
-                from: [start, near],
-                rounded_f64: density
-                    .rounded_f64
-                    .as_ref()
-                    .zip(rounded_curve.as_ref())
-                    .map(|(ground, curve)| RoundedEdge { ground, curve }),
-            };
-            let part = adaptive(pair[0], pair[1], &floor, &on_edge);
-            for (s, v) in total.iter_mut().zip(part) {
-                *s += sign * v;
-            }
+        let sign = brep.topology.coedge(c).sense.sign::<N>();
+        let part = edge_sum(brep, c, density, start, marks(c));
+        for (s, v) in total.iter_mut().zip(part) {
+            *s += sign * v;
         }
     }
     for turn in pole_turns(brep, &density.ground.surface, coedges, side) {
@@ -118,4 +91,64 @@ fn loop_sum<N: Float>(
         start,
         turns,
     }
+}
+
+/// ∫ G du and ∫ du along an edge, split at `marks`.
+fn edge_sum<N: Float>(
+    brep: &Brep<N>,
+    coedge: CoedgeId,
+    density: &Density<'_, N>,
+    start: N,
+    marks: Vec<N>,
+) -> [N; 6] {
+    let edge = brep.topology.coedge(coedge).edge;
+    let curve = brep.curve(edge);
+    let [lo, hi] = brep.range(edge);
+    let mut ends = vec![lo, hi];
+    ends.extend(marks);
+    ends.sort_by(N::total_cmp);
+    let pieces = ends.windows(2).map(|pair| {
+        let range = [pair[0], pair[1]];
+        along_edge(&density.ground, density.amid, curve, range, start)
+            .unwrap_or_else(|| by_quadrature(density, curve, range, start))
+    });
+    pieces.fold([N::ZERO; 6], |sum, part| {
+        std::array::from_fn(|i| sum[i] + part[i])
+    })
+}
+
+/// ∫ G du and ∫ du over a piece of an edge, by quadrature.
+pub(super) fn by_quadrature<N: Float>(
+    density: &Density<'_, N>,
+    curve: &Curve<N>,
+    [lo, hi]: [N; 2],
+    start: N,
+) -> [N; 6] {
+    let rounded_curve = density.rounded_f64.as_ref().map(|_| curve.to_f64());
+    let breaks = curve.breaks(lo, hi);
+    let [a, v, x, y, z] = density.floor;
+    let floor = [a, v, x, y, z, density.amid.part()];
+    // The tolerance is shared among the pieces; for f64 it is their rounding.
+    let floor = match N::IS_DOUBLE {
+        true => floor,
+        false => floor.map(|f| f / N::from_f64(breaks.len() as f64)),
+    };
+    let mut sum = [N::ZERO; 6];
+    for pair in breaks.windows(2) {
+        // The midpoint determines on which side of a cut the piece lies.
+        let middle = curve.point(N::HALF * (pair[0] + pair[1]));
+        let [_, near] = density.ground.parameters(&middle);
+        let rounded = density.rounded_f64.as_ref().zip(rounded_curve.as_ref());
+        let on_edge = OnEdge {
+            ground: &density.ground,
+            curve,
+            from: [start, near],
+            rounded_f64: rounded.map(|(ground, curve)| RoundedEdge { ground, curve }),
+        };
+        let part = adaptive(pair[0], pair[1], &floor, &on_edge);
+        for (s, v) in sum.iter_mut().zip(part) {
+            *s += v;
+        }
+    }
+    sum
 }

@@ -1,5 +1,7 @@
 //! Intersections of a curve with a surface.
 
+mod closed_form;
+
 use super::bounds::Aabb;
 use super::curve::Curve;
 use super::implicit_on_curve::ImplicitOnCurve;
@@ -9,6 +11,7 @@ use crate::number::float::Float;
 use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
+use crate::number::predicates::CLOSE;
 use crate::number::probes::probes;
 use crate::number::roots::{
     Inseparable, NearMiss, Root, RootKind, Roots, isolate, isolate_closely,
@@ -128,6 +131,10 @@ pub fn roots<N: Float>(
     surface: &Surface<N>,
     resolution: N,
 ) -> Result<CurveSurfaceRoots<N>, Inseparable> {
+    let reach = N::from_f64(CLOSE) * resolution;
+    if let Some(known) = closed_form::clear_roots(curve, range, surface, reach) {
+        return Ok(known);
+    }
     if let Some(known) = rounded_roots(curve, range, surface, resolution) {
         return Ok(known);
     }

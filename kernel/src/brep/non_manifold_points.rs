@@ -10,9 +10,14 @@ use super::boundary_input::{BoundaryInput, Names};
 use super::locate::{Locator, PointLocation};
 use super::shells::Fans;
 use super::topology::{EdgeId, FaceId, NonManifoldPoint};
+use crate::geometry::bounds::{Aabb, bounds};
+use crate::geometry::surface::Surface;
+use crate::geometry::vector::rounded;
 use crate::number::float::Float;
 use crate::number::predicates::Predicates;
 use nalgebra::Point3;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 use std::collections::{HashMap, HashSet};
 
 /// A point at which a boundary touches itself, with its location.
@@ -113,25 +118,74 @@ impl Edges {
 
 /// The faces of each surface.
 struct Faces<'a, N: Float = f64> {
-    of_surface: Vec<Vec<FaceId>>,
+    of_surface: Vec<SurfaceFaces>,
     locator: Locator<'a, N>,
 }
 
+/// The faces of a surface.
+enum SurfaceFaces {
+    /// In the order of their ids.
+    Listed(Vec<FaceId>),
+    /// In a tree of boxes, where they are many and lie within the boxes of their edges.
+    Indexed(RTree<FaceBox>),
+}
+
+type FaceBox = GeomWithData<Rectangle<[f64; 3]>, FaceId>;
+
+/// The number of faces of a surface above which a tree of boxes is built.
+const FEW: usize = 12;
+
 impl<'a, N: Float> Faces<'a, N> {
     fn new(brep: &'a Brep<N>, resolution: N) -> Self {
-        let mut of_surface = vec![Vec::new(); brep.geometry.surfaces.len()];
+        let mut listed = vec![Vec::new(); brep.geometry.surfaces.len()];
         for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
-            of_surface[patch.surface].push(face);
+            listed[patch.surface].push(face);
         }
+        let of_surface = listed.into_iter().map(|faces| match faces.as_slice() {
+            [first, ..] if faces.len() > FEW && lies_between_edges(brep.surface(*first)) => {
+                let leaf = |&face: &FaceId| {
+                    let Aabb { min, max } = box_of_edges(brep, face).grown(resolution);
+                    GeomWithData::new(Rectangle::from_corners(min, max), face)
+                };
+                SurfaceFaces::Indexed(RTree::bulk_load(faces.iter().map(leaf).collect()))
+            }
+            _ => SurfaceFaces::Listed(faces),
+        });
         Self {
-            of_surface,
+            of_surface: of_surface.collect(),
             locator: Locator::new(brep, resolution),
         }
     }
 
     /// The face of a surface that contains a point in its interior.
     fn holding(&self, surface: usize, p: &Point3<N>) -> Option<FaceId> {
-        let mut faces = self.of_surface[surface].iter().copied();
-        faces.find(|&face| self.locator.place(face, p) == PointLocation::Inside)
+        let holds = |face: &FaceId| self.locator.place(*face, p) == PointLocation::Inside;
+        match &self.of_surface[surface] {
+            SurfaceFaces::Listed(faces) => faces.iter().copied().find(holds),
+            SurfaceFaces::Indexed(tree) => {
+                let at = AABB::from_point(rounded(p));
+                let around = tree.locate_in_envelope_intersecting(at);
+                let mut faces: Vec<FaceId> = around.map(|leaf| leaf.data).collect();
+                faces.sort_unstable();
+                faces.into_iter().find(holds)
+            }
+        }
     }
+}
+
+/// Whether every point of a face of a surface lies on a straight line of the surface between two
+/// points of its edges.
+fn lies_between_edges<N: Float>(surface: &Surface<N>) -> bool {
+    match surface {
+        Surface::Plane(_) | Surface::Cylinder(_) | Surface::EllipticCylinder(_) => true,
+        // An apex may be inside a face.
+        Surface::Cone(_) | Surface::EllipticCone(_) => false,
+        Surface::Sphere(_) | Surface::Torus(_) | Surface::Ellipsoid(_) => false,
+    }
+}
+
+fn box_of_edges<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
+    let boxes = brep.topology.edges_of(face);
+    let boxes = boxes.map(|edge| bounds(brep.curve(edge), brep.range(edge)));
+    boxes.fold(Aabb::EMPTY, |all, b| all.hull(&b))
 }

@@ -8,13 +8,15 @@
 //! loops of a region. On a ring torus both circles through each loop are followed, and paths to the
 //! first loop.
 
+mod following;
 mod torus;
 
 use super::arcs::Arcs;
-use super::surface_path::{CrossingSense, DirectedArc, PathCrossing, SurfacePath};
+use super::surface_path::{DirectedArc, SurfacePath};
 use super::topology::Sense;
+use crate::geometry::bounds::Aabb;
 use crate::geometry::frame::perpendicular;
-use crate::geometry::surface::Surface;
+use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -55,24 +57,6 @@ struct Start<N: Float = f64> {
     left: Vector3<N>,
 }
 
-/// What a path over the surface determines.
-struct FollowedPath {
-    /// The loop through which the path entered the region in which it is.
-    inside: Option<usize>,
-    /// The same at the start of the last leg.
-    before: Option<usize>,
-    /// The pairs of loops that bound a common region.
-    joined: Vec<[usize; 2]>,
-}
-
-impl FollowedPath {
-    /// The path with its last region joined to the goal, if it ends in one.
-    fn ended_in(mut self, goal: usize) -> Self {
-        self.joined.extend(self.inside.map(|from| [from, goal]));
-        self
-    }
-}
-
 struct Sorter<'a, N: Float = f64> {
     surface: &'a Surface<N>,
     outward: Sense,
@@ -82,6 +66,8 @@ struct Sorter<'a, N: Float = f64> {
     /// The first arc of each loop, and one past the last.
     firsts: Vec<usize>,
     resolution: N,
+    /// The size of all arcs.
+    size: f64,
     parent: Vec<usize>,
     /// Whether a loop on a torus winds around the axis and around the tube.
     winding: [bool; 2],
@@ -103,6 +89,7 @@ pub(super) fn regions<'a, N: Float>(
         firsts.push(arcs.len());
     }
     let arcs = Arcs::new(arcs, resolution);
+    let all = arcs.boxes.iter().fold(Aabb::EMPTY, |all, b| all.hull(b));
     // One entry per loop, and one for each attempt's fixed point of a sphere or a cone.
     let parent = (0..loops.len() + ATTEMPTS).collect();
     let mut sorter = Sorter {
@@ -112,6 +99,7 @@ pub(super) fn regions<'a, N: Float>(
         owner,
         firsts,
         resolution,
+        size: all.diagonal(),
         parent,
         winding: [false; 2],
     };
@@ -172,13 +160,32 @@ impl<N: Float> Sorter<'_, N> {
             return self.connect_ruled(ring, attempt);
         }
         let mut place = [0.0; 3];
-        for start in self.starts(ring) {
-            place = rounded(&start.point);
-            if self.walk_from(ring, &start, attempt) {
-                return None;
+        // All paths of an attempt in a plane should have one direction: those that lead into the
+        // face are first.
+        for leads_in in [true, false] {
+            for &fraction in &STARTS {
+                for arc in self.firsts[ring]..self.firsts[ring + 1] {
+                    let start = self.start_on(arc, N::from_f64(fraction));
+                    place = rounded(&start.point);
+                    if self.leads_in(&start, attempt) == leads_in
+                        && self.walk_from(ring, &start, attempt)
+                    {
+                        return None;
+                    }
+                }
             }
         }
         Some(RegionError { place })
+    }
+
+    /// Whether the direction of an attempt leads from a point of a loop into the face.
+    fn leads_in(&self, start: &Start<N>, attempt: usize) -> bool {
+        match self.surface {
+            Surface::Plane(plane) => direction_in_plane(plane, attempt)
+                .dot(&start.left)
+                .reaches(N::from_f64(SLANT)),
+            _ => true,
+        }
     }
 
     /// The points of a loop from which paths may start.
@@ -219,7 +226,8 @@ impl<N: Float> Sorter<'_, N> {
         walks.sort_by_key(|(_, down)| !down.as_ref().is_some_and(|d| d.0.is_above_zero()));
         for (start, down) in walks {
             if let Some((_, walk)) = down
-                && self.follow_down(ring, start, vec![walk], attempt)
+                && (self.follow_to_next(ring, start, &walk)
+                    || self.follow_down(ring, start, vec![walk], attempt))
             {
                 return None;
             }
@@ -310,10 +318,12 @@ impl<N: Float> Sorter<'_, N> {
                 self.follow(ring, *arc, point, left, &[walk], Some(goal))
             }
             Surface::Plane(plane) => {
-                let f = &plane.frame;
-                let angle = N::from_f64(0.7) + N::from_f64(1.9) * N::from_f64(attempt as f64);
-                let d = f.x * angle.cos() + f.y * angle.sin();
+                let d = direction_in_plane(plane, attempt);
                 let walk = SurfacePath::straight(plane, point, d).toward(point, left);
+                let is_reversed = walk.direction(point).dot(&d).is_below_zero();
+                if !is_reversed && self.follow_to_next(ring, start, &walk) {
+                    return true;
+                }
                 self.follow(ring, *arc, point, left, &[walk], None)
             }
             Surface::Cylinder(_)
@@ -321,183 +331,6 @@ impl<N: Float> Sorter<'_, N> {
             | Surface::EllipticCylinder(_)
             | Surface::EllipticCone(_) => false,
         }
-    }
-
-    /// Follows the legs of a path and joins the loops that it crosses; `goal` is joined if the path
-    /// ends inside. The path starts into the region of the loop. A path downwards may also
-    /// start into the region on the other side of the edge, if there is one. Returns false if
-    /// anything is unclear.
-    fn follow(
-        &mut self,
-        ring: usize,
-        arc: usize,
-        p: &Point3<N>,
-        left: &Vector3<N>,
-        legs: &[SurfacePath<N>],
-        goal: Option<usize>,
-    ) -> bool {
-        let heading = legs[0].direction(p).dot(left);
-        // A leg that ends close to the arc has not left it; the next leg may lead to its other
-        // side.
-        let leaves = legs.len() == 1 || legs[0].length().is_beyond(self.start());
-        if !leaves {
-            return false;
-        }
-        let Some(inside) = self.entered(ring, arc, heading) else {
-            return false;
-        };
-        let followed = self.followed(inside, arc, legs);
-        let ended = match goal {
-            Some(goal) => followed.map(|path| path.ended_in(goal)),
-            None => followed.and_then(|path| self.closed(path, arc, legs)),
-        };
-        let Some(path) = ended else {
-            return false;
-        };
-        for [a, b] in path.joined {
-            self.join(a, b);
-        }
-        true
-    }
-
-    /// The loop whose region a path enters first, if it enters one; `None` if the path runs along
-    /// its starting arc.
-    fn entered(&self, ring: usize, arc: usize, heading: N) -> Option<Option<usize>> {
-        let is_ruled = leads_down(self.surface);
-        if heading.reaches(N::from_f64(SLANT)) {
-            Some(Some(ring))
-        } else if is_ruled && (-heading).reaches(N::from_f64(SLANT)) {
-            Some(self.twin(arc).map(|twin| self.owner[twin]))
-        } else {
-            None
-        }
-    }
-
-    /// Follows the legs of a path that starts in a region; `None` if anything is unclear.
-    fn followed(
-        &self,
-        inside: Option<usize>,
-        arc: usize,
-        legs: &[SurfacePath<N>],
-    ) -> Option<FollowedPath> {
-        let mut path = FollowedPath {
-            inside,
-            before: inside,
-            joined: Vec::new(),
-        };
-        for (k, leg) in legs.iter().enumerate() {
-            path.before = path.inside;
-            for c in self.crossings(leg, (k == 0).then_some(arc))? {
-                let passed = self.owner[c.arc];
-                match (path.inside, c.passage) {
-                    (Some(from), CrossingSense::Leaving) => {
-                        path.joined.push([from, passed]);
-                        path.inside = None;
-                    }
-                    (None, CrossingSense::Entering) => path.inside = Some(passed),
-                    _ => return None,
-                }
-            }
-        }
-        Some(path)
-    }
-
-    /// The path with the regions joined in which it returns to its start, if it does; `None` if
-    /// that is unclear.
-    fn closed(
-        &self,
-        mut path: FollowedPath,
-        arc: usize,
-        legs: &[SurfacePath<N>],
-    ) -> Option<FollowedPath> {
-        match legs {
-            // The path returns to its start from the other side: the face bounds itself there.
-            [round] if round.closes() => {
-                if let Some(from) = path.inside {
-                    path.joined.push([from, self.owner[self.twin(arc)?]]);
-                }
-            }
-            // The path returns to the start of its last leg, which is not on an arc.
-            [_, .., round] if round.closes() => match (path.inside, path.before) {
-                (Some(from), Some(to)) => path.joined.push([from, to]),
-                (None, None) => {}
-                _ => return None,
-            },
-            _ => {}
-        }
-        Some(path)
-    }
-
-    /// The distance from a path's start within which its starting arc lies.
-    fn start(&self) -> N {
-        N::from_f64(64.0) * self.resolution
-    }
-
-    /// The arc over the same edge in the opposite direction.
-    fn twin(&self, arc: usize) -> Option<usize> {
-        let a = &self.arcs.all[arc];
-        let mut all = self.arcs.all.iter();
-        all.position(|b| a.shares_edge(b) && a.sense != b.sense)
-    }
-
-    /// The crossings of a leg in order, without its start on an arc; `None` if one is unclear.
-    fn crossings(
-        &self,
-        walk: &SurfacePath<N>,
-        start: Option<usize>,
-    ) -> Option<Vec<PathCrossing<N>>> {
-        let mut found: Vec<PathCrossing<N>> = Vec::new();
-        let mut clear = true;
-        self.arcs.hit_by(walk, self.resolution, &mut |i, ranges| {
-            // The rest is not needed.
-            if !clear {
-                return;
-            }
-            let arc = &self.arcs.all[i];
-            // Arcs of both senses run over the starting edge if a face bounds itself there.
-            let own = start.is_some_and(|start| arc.shares_edge(&self.arcs.all[start]));
-            let mut note = |at: N, t: N, passage: CrossingSense| {
-                let here = own && (at.is_at_most(self.start()) || self.is_full_turn(walk, at));
-                if !here {
-                    clear &= passage != CrossingSense::Unclear;
-                    found.push(PathCrossing {
-                        at,
-                        arc: i,
-                        t,
-                        passage,
-                    });
-                }
-            };
-            walk.intersections(
-                self.surface,
-                self.outward,
-                arc,
-                ranges,
-                self.resolution,
-                &mut note,
-            );
-        });
-        if !clear {
-            return None;
-        }
-        found.sort_by(|a, b| a.at.total_cmp(&b.at).then(a.arc.cmp(&b.arc)));
-        // Where faces of one surface share an edge, the path leaves one before it enters the other.
-        for k in 1..found.len() {
-            let together = (found[k].at - found[k - 1].at).is_at_most(self.resolution);
-            if together
-                && found[k - 1].passage == CrossingSense::Entering
-                && found[k].passage == CrossingSense::Leaving
-            {
-                found.swap(k - 1, k);
-            }
-        }
-        Some(found)
-    }
-
-    /// Whether a closed path is back at its start.
-    fn is_full_turn(&self, walk: &SurfacePath<N>, at: N) -> bool {
-        let away = (walk.point(at) - walk.point(N::ZERO)).length();
-        away.is_within(self.start())
     }
 
     /// The Euler characteristic of a region.
@@ -512,6 +345,12 @@ impl<N: Float> Sorter<'_, N> {
         let is_part_of_sphere = turns.iter().any(|t| t.winds() || t.area.is_above_zero());
         if is_part_of_sphere { 2 - n } else { -n }
     }
+}
+
+/// The direction of all paths of an attempt in a plane.
+fn direction_in_plane<N: Float>(plane: &Plane<N>, attempt: usize) -> Vector3<N> {
+    let angle = N::from_f64(0.7) + N::from_f64(1.9) * N::from_f64(attempt as f64);
+    plane.frame.x * angle.cos() + plane.frame.y * angle.sin()
 }
 
 /// Whether paths down the rulings or the meridians of a surface connect its loops.
@@ -544,3 +383,6 @@ fn pole<N: Float>(surface: &Surface<N>, attempt: usize) -> Point3<N> {
         _ => frame.origin,
     }
 }
+
+#[cfg(test)]
+mod tests;

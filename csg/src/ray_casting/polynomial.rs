@@ -14,12 +14,7 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> [f64; 2] {
 }
 
 /// (|p|² + R² - r²)² - 4 R² rho² along the line, from the constant term up.
-pub(super) fn torus_quartic(
-    o: &Vector3<f64>,
-    d: &Vector3<f64>,
-    major: f64,
-    minor: f64,
-) -> [f64; 5] {
+fn torus_quartic(o: &Vector3<f64>, d: &Vector3<f64>, major: f64, minor: f64) -> [f64; 5] {
     let [a, b, c] = [d.norm_squared(), 2.0 * o.dot(d), o.norm_squared()];
     let c = c + (major - minor) * (major + minor);
     let four = 4.0 * major * major;
@@ -37,48 +32,89 @@ pub(super) fn torus_quartic(
     ]
 }
 
-/// The simple roots in (-half, half) of a function with the sign of the quartic `p`. The roots of
-/// each derivative separate those of the previous one, starting with the linear one.
-pub(super) fn quartic_crossings(p: &[f64; 5], sign: &dyn Fn(f64) -> f64, half: f64) -> Vec<f64> {
-    let mut roots: Vec<f64> = Vec::new();
-    for degree in 1..=4 {
-        let derivative = differentiated(p, 4 - degree);
-        let value = |t: f64| derivative.iter().rev().fold(0.0, |sum, &k| sum * t + k);
-        let function: &dyn Fn(f64) -> f64 = if degree == 4 { sign } else { &value };
-        let mut next = Vec::new();
-        let mut lower = -half;
-        for upper in roots.into_iter().chain([half]) {
-            next.extend(bisect(function, lower, upper));
-            lower = upper;
+/// A value and its derivative.
+struct ValueAndSlope {
+    value: f64,
+    slope: f64,
+}
+
+/// The distance of a point from a torus about z, and its derivative along a direction.
+fn torus_distance(p: &Vector3<f64>, d: &Vector3<f64>, [major, minor]: [f64; 2]) -> ValueAndSlope {
+    let across = p.x.hypot(p.y);
+    let out = across - major;
+    let from_circle = out.hypot(p.z);
+    let outward = (p.x * d.x + p.y * d.y) / across;
+    ValueAndSlope {
+        value: from_circle - minor,
+        slope: (out * outward + p.z * d.z) / from_circle,
+    }
+}
+
+/// The parameters in (-half, half) at which the line `o + t d` crosses a torus about z. The sign is
+/// that of the distance. The roots of each derivative of the implicit quartic separate those of the
+/// previous one, starting with the quadratic one.
+pub(super) fn torus_crossings(
+    o: &Vector3<f64>,
+    d: &Vector3<f64>,
+    [major, minor]: [f64; 2],
+    half: f64,
+) -> impl Iterator<Item = f64> {
+    let [_, p1, p2, p3, p4] = torus_quartic(o, d, major, minor);
+    let distance = |t: f64| torus_distance(&(o + d * t), d, [major, minor]);
+    let bends = quadratic(12.0 * p4, 3.0 * p3, 2.0 * p2);
+    let inside = |t: &f64| -half < *t && *t < half;
+    let cubic = |t: f64| ValueAndSlope {
+        value: ((4.0 * p4 * t + 3.0 * p3) * t + 2.0 * p2) * t + p1,
+        slope: (12.0 * p4 * t + 6.0 * p3) * t + 2.0 * p2,
+    };
+    let mut turns = [f64::NAN; 3];
+    between(bends.into_iter().filter(inside), &cubic, half, &mut turns);
+    let mut roots = [f64::NAN; 4];
+    let turns = turns.into_iter().filter(|t| !t.is_nan());
+    between(turns, &distance, half, &mut roots);
+    roots.into_iter().filter(|t| !t.is_nan())
+}
+
+/// Sets the roots of a function in (-half, half), given where it turns. Others stay as they are.
+fn between(
+    turns: impl Iterator<Item = f64>,
+    function: &impl Fn(f64) -> ValueAndSlope,
+    half: f64,
+    roots: &mut [f64],
+) {
+    let mut lower = -half;
+    for (upper, root) in turns.chain([half]).zip(roots) {
+        if let Some(found) = crossing(function, lower, upper) {
+            *root = found;
         }
-        roots = next;
+        lower = upper;
     }
-    roots
 }
 
-fn differentiated(p: &[f64; 5], times: usize) -> Vec<f64> {
-    let mut p = p.to_vec();
-    for _ in 0..times {
-        p = (1..p.len()).map(|i| p[i] * i as f64).collect();
-    }
-    p
-}
-
-/// The point between two others at which `f` changes sign, to the last digit.
-fn bisect(f: &dyn Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> Option<f64> {
-    let rising = f(hi) > 0.0;
-    if rising == (f(lo) > 0.0) {
+/// The point between two others at which a function changes sign, to the last digit: Newton's
+/// method, with a bisection wherever a step leaves the range or is not half of the one before.
+fn crossing(f: &impl Fn(f64) -> ValueAndSlope, mut lo: f64, mut hi: f64) -> Option<f64> {
+    let rising = f(hi).value > 0.0;
+    if rising == (f(lo).value > 0.0) {
         return None;
     }
-    loop {
-        let middle = 0.5 * (lo + hi);
-        if middle <= lo || middle >= hi {
-            return Some(middle);
-        }
-        if (f(middle) > 0.0) == rising {
-            hi = middle;
+    let mut last = hi - lo;
+    let mut t = 0.5 * (lo + hi);
+    while lo < t && t < hi {
+        let ValueAndSlope { value, slope } = f(t);
+        if (value > 0.0) == rising {
+            hi = t;
         } else {
-            lo = middle;
+            lo = t;
         }
+        let step = value / slope;
+        let next = t - step;
+        let is_newton = lo < next && next < hi && step.abs() <= 0.5 * last.abs();
+        if is_newton && step.abs() <= f64::EPSILON * t.abs() {
+            return Some(next);
+        }
+        last = if is_newton { step } else { 0.5 * (hi - lo) };
+        t = if is_newton { next } else { 0.5 * (lo + hi) };
     }
+    Some(t)
 }

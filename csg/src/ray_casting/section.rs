@@ -1,7 +1,7 @@
 //! Prisms and revolutions: point membership by the winding number of the figure's outline, and the
 //! crossings of a line with the surface of every edge.
 
-use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
+use super::polynomial::{quadratic, torus_crossings};
 use crate::figure::{ArcTurn, Figure, FigureEdge};
 use crate::primitive::RevolutionAngle;
 use nalgebra::Vector3;
@@ -200,14 +200,7 @@ fn revolved(edge: &Edge, o: &Vector3<f64>, d: &Vector3<f64>, half: f64, add: &mu
                     .for_each(add);
                 return;
             }
-            let quartic = torus_quartic(&o, d, major, r);
-            let level = |t: f64| {
-                let p = o + d * t;
-                (p.x.hypot(p.y) - major).hypot(p.z) - r
-            };
-            quartic_crossings(&quartic, &level, half)
-                .into_iter()
-                .for_each(add);
+            torus_crossings(&o, d, [major, r], half).for_each(add);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::ellipsoid::EllipsoidShape;
 use super::facets::FacetShape;
 use super::oblique::ObliqueShape;
-use super::polynomial::{quadratic, quartic_crossings, torus_quartic};
+use super::polynomial::{quadratic, torus_crossings};
 use super::section::SectionShape;
 use crate::primitive::Primitive;
 use nalgebra::Vector3;
@@ -207,11 +207,7 @@ impl Shape {
                 cuts.sort_by(f64::total_cmp);
             }
             &Self::Torus { major, minor } => {
-                let p = torus_quartic(o, d, major, minor);
-                let level = |t: f64| self.level(&(o + d * t));
-                quartic_crossings(&p, &level, half)
-                    .into_iter()
-                    .for_each(add);
+                torus_crossings(o, d, [major, minor], half).for_each(add);
             }
         }
     }

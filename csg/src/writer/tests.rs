@@ -253,7 +253,7 @@ fn the_empty_solid() {
 
 #[test]
 fn deep_parts_need_no_stack() {
-    const LEVELS: usize = 100_000;
+    const LEVELS: usize = 50_000;
     let text = format!(
         "A = {}SPH(R=1){}",
         "(".repeat(LEVELS),

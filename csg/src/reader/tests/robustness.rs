@@ -98,7 +98,7 @@ fn the_seeds_are_good() {
     }
 }
 
-const DEEP: usize = 1_000_000;
+const DEEP: usize = 100_000;
 
 fn nested(open: &str, middle: &str, close: &str) -> String {
     [open.repeat(DEEP).as_str(), middle, &close.repeat(DEEP)].concat()
@@ -210,7 +210,7 @@ fn deep_pov() {
     assert_eq!(tree(&text, Format::Pov).leaves().count(), 1);
 }
 
-const LEVELS: usize = 100_000;
+const LEVELS: usize = 50_000;
 
 #[test]
 fn deep_trees_of_alternating_operations() {

@@ -8,3 +8,4 @@ pub mod mirror;
 pub mod pairs;
 pub mod parts;
 pub mod random;
+pub mod scenes;

@@ -176,10 +176,15 @@ fn deep_asc() {
     let solid = "put s ell V {0 0 0} A {1 0 0} B {0 1 0} C {0 0 1}\n";
     let deep = nested("{u {l s} ", "{l s}", "}");
     let text = format!("{solid}put c comb tree {deep}\n");
-    assert!(
-        read_text(&text, Format::Asc).is_err(),
-        "copies have a limit"
+    assert_eq!(tree(&text, Format::Asc).leaves().count(), DEEP + 1);
+    // Each combination uses the one before twice: copies have a limit.
+    let doubled =
+        (1..40).map(|k| format!("put c{k} comb tree {{u {{l c{0}}} {{l c{0}}}}}\n", k - 1));
+    let text = format!(
+        "{solid}put c0 comb tree {{l s}}\n{}",
+        doubled.collect::<String>()
     );
+    assert!(read_text(&text, Format::Asc).is_err());
     let text = format!("{solid}put c comb tree {}\n", "{".repeat(DEEP));
     assert!(read_text(&text, Format::Asc).is_err());
     // A combination of one member for each level.

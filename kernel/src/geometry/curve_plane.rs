@@ -7,6 +7,7 @@ use super::frame::Frame;
 use super::quadric_curve::{QuadricCurve, Ruled, Sweep};
 use super::surface::{Plane, Surface};
 use crate::geometry::vector::Length;
+use crate::number::elementary_roots::{linear_roots, wave_roots};
 use crate::number::float::Float;
 use crate::number::roots::{RootKind, Roots};
 use nalgebra::{Point3, Vector3};
@@ -54,15 +55,15 @@ pub(crate) fn section_roots<N: Float>(
     match curve {
         Curve::Line(c) => {
             let height = (c.origin - o).dot(n);
-            line_roots(height, c.direction.dot(n), range, resolution, found);
+            linear_roots(height, c.direction.dot(n), range, resolution, found);
         }
         Curve::Circle(c) => {
             let k = [c.radius * c.frame.x.dot(n), c.radius * c.frame.y.dot(n)];
-            turn_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
+            wave_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
         }
         Curve::Ellipse(c) => {
             let k = [c.a * c.frame.x.dot(n), c.b * c.frame.y.dot(n)];
-            turn_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
+            wave_roots((c.frame.origin - o).dot(n), k, range, resolution, found);
         }
         Curve::Quartic(c) if through_axis(c, section, resolution) => {
             ruling_roots(c, range, n, resolution, found);
@@ -150,60 +151,6 @@ fn ruling_roots<N: Float>(
             }
         }
     }
-}
-
-/// Zeros of height + slope t.
-fn line_roots<N: Float>(
-    height: N,
-    slope: N,
-    [lo, hi]: [N; 2],
-    resolution: N,
-    found: &mut impl FnMut(N, bool),
-) {
-    let (a, b) = (height + slope * lo, height + slope * hi);
-    if a.abs() <= resolution && b.abs() <= resolution {
-        found(N::HALF * (lo + hi), false);
-    } else if a * b <= N::ZERO {
-        found((-height / slope).clamp(lo, hi), true);
-    }
-}
-
-/// Zeros of c + k[0] cos t + k[1] sin t.
-fn turn_roots<N: Float>(
-    c: N,
-    k: [N; 2],
-    [lo, hi]: [N; 2],
-    resolution: N,
-    found: &mut impl FnMut(N, bool),
-) {
-    let size = k[0].hypot(k[1]);
-    let at = k[1].atan2(k[0]);
-    if size + c.abs() <= resolution {
-        return found(N::HALF * (lo + hi), false);
-    }
-    if c.abs() > size + resolution {
-        return;
-    }
-    let mut within = |t: N, simple: bool| {
-        let t = lo + (t - lo).rem_euclid(N::TAU);
-        if t <= hi {
-            found(t, simple);
-        }
-    };
-    if c.abs() >= size - resolution {
-        return within(
-            if c > N::ZERO {
-                at + N::TAU / N::TWO
-            } else {
-                at
-            },
-            false,
-        );
-    }
-    // Close to the top, the difference of squares is more accurate than the arc cosine.
-    let half = ((size - c) * (size + c)).sqrt().atan2(-c);
-    within(at - half, true);
-    within(at + half, true);
 }
 
 /// Intersects a line on one of two quadrics with their intersection curve over a range. The line

@@ -5,6 +5,7 @@ pub mod analytic;
 pub mod bisection;
 mod chebyshev_model;
 pub mod double_double;
+pub(crate) mod elementary_roots;
 pub(crate) mod enclosable;
 pub mod extended;
 mod f64_float;

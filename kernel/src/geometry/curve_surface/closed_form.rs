@@ -1,23 +1,26 @@
 //! Roots in closed form: of a line with a plane, a cylinder or a sphere, and of a circle or an
 //! ellipse with a plane, a sphere, or a parallel cylinder.
 //!
-//! The level of the surface along the curve is a polynomial of degree two at most, or a constant
-//! plus one wave. Its roots are given only where they are unambiguous: every extremum, and the level
-//! at both ends, is farther from zero than any close call. All else is left to root isolation.
+//! The level of the surface along the curve is a polynomial of degree two at most, or a constant plus a
+//! wave. The roots are returned only if they are unambiguous: the level at both ends of the range, and
+//! at each extremum, is farther from zero than any close call. Root isolation handles other cases.
 
 use super::CurveSurfaceRoots;
 use crate::geometry::curve::{Curve, Line};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::Length;
+use crate::number::elementary_roots::{linear_roots, quadratic_roots, wave_roots};
 use crate::number::float::Float;
 use crate::number::roots::{Root, RootKind};
 use nalgebra::Vector3;
 
 /// The level of a surface along a curve.
 enum Level<N> {
-    /// c + 2 b t + a t², a ≥ 0.
-    Polynomial { a: N, b: N, c: N },
+    /// height + slope t.
+    Linear { height: N, slope: N },
+    /// c + 2 b t + a t², a > 0.
+    Quadratic { a: N, b: N, c: N },
     /// c + p cos t + q sin t.
     Wave { c: N, p: N, q: N },
 }
@@ -28,11 +31,11 @@ struct LevelOnCurve<N> {
     size: N,
 }
 
-/// The roots in a range; `None` where one of them, or a near miss, may be a close call. `reach` is
-/// the largest level that is one.
+/// The roots in a range; `None` if one of them, or a near miss, may be a close call. `reach` is the
+/// largest level of a close call.
 pub(super) fn clear_roots<N: Float>(
     curve: &Curve<N>,
-    [lo, hi]: [N; 2],
+    range: [N; 2],
     surface: &Surface<N>,
     reach: N,
 ) -> Option<CurveSurfaceRoots<N>> {
@@ -41,30 +44,37 @@ pub(super) fn clear_roots<N: Float>(
     if reach <= noise || noise.is_nan() {
         return None;
     }
-    let is_clear = |value: N| value.abs() > reach;
-    let ends = [lo, hi].map(|t| level.at(t));
-    if !ends.into_iter().all(is_clear) {
+    let [at_lo, at_hi] = range.map(|t| level.at(t));
+    if !(at_lo.abs() > reach && at_hi.abs() > reach) {
         return None;
     }
-    let found = level.roots(lo, is_clear)?.into_iter().flatten();
-    let mut inside: Vec<N> = found.filter(|&t| t > lo && t < hi).collect();
-    inside.sort_by(N::total_cmp);
+    let roots = level.roots(range, reach)?;
     // The number of roots has to agree with the signs at the ends.
-    let changes = (ends[0] > N::ZERO) != (ends[1] > N::ZERO);
-    if changes != (inside.len() % 2 == 1) {
+    let changes = (at_lo > N::ZERO) != (at_hi > N::ZERO);
+    if changes == roots.len().is_multiple_of(2) {
         return None;
     }
-    let root = |t: N| Root {
-        t,
-        lo: t,
-        hi: t,
-        contact: RootKind::Simple,
-        margin: None,
+    let root = |t: N| {
+        let t = polished(t, curve, surface);
+        Root {
+            t,
+            lo: t,
+            hi: t,
+            contact: RootKind::Simple,
+            margin: None,
+        }
     };
     Some(CurveSurfaceRoots {
-        roots: inside.into_iter().map(root).collect(),
+        roots: roots.into_iter().map(root).collect(),
         misses: Vec::new(),
     })
+}
+
+/// A root after a step of Newton's method. The coefficients of a level have rounding errors of the
+/// distance of the curve's origin, and at a grazing crossing these move the root far.
+fn polished<N: Float>(t: N, curve: &Curve<N>, surface: &Surface<N>) -> N {
+    let level = surface.level(curve.jet(t));
+    t - level.v / level.d
 }
 
 /// The number of roundings in a level.
@@ -73,7 +83,8 @@ const ROUNDINGS: f64 = 64.0;
 impl<N: Float> Level<N> {
     fn at(&self, t: N) -> N {
         match *self {
-            Self::Polynomial { a, b, c } => (a * t + N::TWO * b) * t + c,
+            Self::Linear { height, slope } => height + slope * t,
+            Self::Quadratic { a, b, c } => (a * t + N::TWO * b) * t + c,
             Self::Wave { c, p, q } => {
                 let (sin, cos) = t.sin_cos();
                 c + p * cos + q * sin
@@ -81,37 +92,22 @@ impl<N: Float> Level<N> {
         }
     }
 
-    /// The roots, for a wave those of one turn from `lo`; `None` where an extremum is not clear.
-    fn roots(&self, lo: N, is_clear: impl Fn(N) -> bool) -> Option<[Option<N>; 2]> {
+    /// The roots, in increasing order; `None` if an extremum next to one is within `reach`.
+    fn roots(&self, range: [N; 2], reach: N) -> Option<Vec<N>> {
+        let (mut roots, mut is_clear) = (Vec::new(), true);
+        let mut found = |t: N, is_simple: bool| {
+            is_clear &= is_simple;
+            roots.push(t);
+        };
         match *self {
-            Self::Polynomial { a, b, c } if a == N::ZERO => {
-                Some([(b != N::ZERO).then(|| -c / (N::TWO * b)), None])
+            Self::Linear { height, slope } => {
+                linear_roots(height, slope, range, reach, &mut found);
             }
-            Self::Polynomial { a, b, c } => {
-                let least = c - b * b / a;
-                if !is_clear(least) {
-                    return None;
-                }
-                if least > N::ZERO {
-                    return Some([None, None]);
-                }
-                let k = -(b + (b * b - a * c).sqrt().copysign(b));
-                Some([Some(k / a), Some(c / k)])
-            }
-            Self::Wave { c, p, q } => {
-                let size = p.hypot(q);
-                if !(is_clear(c - size) && is_clear(c + size)) {
-                    return None;
-                }
-                if c.abs() > size {
-                    return Some([None, None]);
-                }
-                let top = q.atan2(p);
-                let half = ((size - c) * (size + c)).sqrt().atan2(-c);
-                let in_turn = |t: N| Some(lo + (t - lo).rem_euclid(N::TAU));
-                Some([in_turn(top - half), in_turn(top + half)])
-            }
+            Self::Quadratic { a, b, c } => quadratic_roots([a, b, c], range, reach, &mut found),
+            Self::Wave { c, p, q } => wave_roots(c, [p, q], range, reach, &mut found),
         }
+        roots.sort_by(N::total_cmp);
+        is_clear.then_some(roots)
     }
 }
 
@@ -139,10 +135,9 @@ fn on_line<N: Float>(line: &Line<N>, surface: &Surface<N>) -> Option<LevelOnCurv
     );
     let (o, d, radius) = match surface {
         Surface::Plane(_) => {
-            let level = Level::Polynomial {
-                a: N::ZERO,
-                b: N::HALF * d.z,
-                c: o.z,
+            let level = Level::Linear {
+                height: o.z,
+                slope: d.z,
             };
             let size = o.length();
             return Some(LevelOnCurve { level, size });
@@ -159,14 +154,14 @@ fn on_line<N: Float>(line: &Line<N>, surface: &Surface<N>) -> Option<LevelOnCurv
         | Surface::Ellipsoid(_) => return None,
     };
     let a = d.dot(&d);
-    // A line nearly along the axis has its nearest point too far away.
+    // A line nearly parallel to the axis is nearest to it far away, where digits cancel.
     if a < N::from_f64(STEEP) {
         return None;
     }
     let (b, away) = (o.dot(&d), o.dot(&o));
     let scale = N::HALF / radius;
     Some(LevelOnCurve {
-        level: Level::Polynomial {
+        level: Level::Quadratic {
             a: a * scale,
             b: b * scale,
             c: (away - radius * radius) * scale,
@@ -178,7 +173,7 @@ fn on_line<N: Float>(line: &Line<N>, surface: &Surface<N>) -> Option<LevelOnCurv
 /// The least square of the sine of the angle between a line and an axis.
 const STEEP: f64 = 1.0 / 256.0;
 
-/// The level along the points centre + x cos t + y sin t; they are a circle if there is a radius.
+/// The level along the ellipse centre + x cos t + y sin t. A circle has a radius.
 fn on_ellipse<N: Float>(
     frame: &Frame<N>,
     [x, y]: [Vector3<N>; 2],
@@ -251,14 +246,14 @@ mod tests {
         ) {
             let [f, g] = [frame(tilts[0], first), frame(tilts[1], second)];
             let [a, b] = [a.max(b), a.min(b)];
-            let beside = Frame { origin: g.origin, ..f };
+            let shifted = Frame { origin: g.origin, ..f };
             let line = Curve::Line(Line { origin: f.origin, direction: f.z });
             let circle = Curve::Circle(Circle { frame: f, radius: a });
             let ellipse = Curve::Ellipse(Ellipse { frame: f, a, b });
             let plane = Surface::Plane(Plane { frame: g });
             let sphere = Surface::Sphere(Sphere { frame: g, radius });
             let cylinder = Surface::Cylinder(Cylinder { frame: g, radius });
-            let parallel = Surface::Cylinder(Cylinder { frame: beside, radius });
+            let parallel = Surface::Cylinder(Cylinder { frame: shifted, radius });
             let cases = [
                 (&line, plane), (&line, sphere), (&line, cylinder), (&circle, plane),
                 (&circle, sphere), (&circle, parallel), (&ellipse, plane),
@@ -278,6 +273,38 @@ mod tests {
                 for (x, y) in found.roots.iter().zip(&roots) {
                     prop_assert!((x.t - y.t).abs() <= 1e-9, "case {i}: {x:?} {y:?}");
                     prop_assert_eq!(x.contact, y.contact);
+                }
+            }
+        }
+    }
+
+    proptest! {
+        /// The origin of the line, or the centre of the circle, is far from the sphere and the cylinder.
+        /// Squares of that distance must not be in the error of a root.
+        #[test]
+        fn a_root_is_as_accurate_as_the_points_of_the_curve(
+            tilts in prop::array::uniform2(0.0..TAU),
+            aside in prop::array::uniform3(-1.0..1.0),
+            [far, radius] in [10.0..1000.0, 0.5..2.0_f64],
+        ) {
+            let [f, g] = [frame(tilts[0], aside), frame(tilts[1], [0.0; 3])];
+            let origin = f.point(0.0, 0.0, -far);
+            let line = Curve::Line(Line { origin, direction: f.z });
+            let around = Frame { origin: f.point(-far, 0.0, 0.0), ..f };
+            let circle = Curve::Circle(Circle { frame: around, radius: far });
+            let half = 4.0 / far;
+            let sphere = Surface::Sphere(Sphere { frame: g, radius });
+            let cylinder = Surface::Cylinder(Cylinder { frame: g, radius });
+            let parallel = Surface::Cylinder(Cylinder { frame: Frame { origin: g.origin, ..f }, radius });
+            let cases = [
+                (&line, sphere, [far - 4.0, far + 4.0]), (&line, cylinder, [far - 4.0, far + 4.0]),
+                (&circle, sphere, [-half, half]), (&circle, parallel, [-half, half]),
+            ];
+            for (i, (curve, surface, range)) in cases.into_iter().enumerate() {
+                let found = clear_roots(curve, range, &surface, 1e-8).map(|found| found.roots);
+                for root in found.into_iter().flatten() {
+                    let residual = surface.distance(&curve.point(root.t)).abs();
+                    prop_assert!(residual <= 2.0 * f64::EPSILON * far, "case {i}: {residual:e}");
                 }
             }
         }
@@ -311,7 +338,7 @@ mod tests {
             })
         };
         for x in [2.0, 2.0 + 1e-10, -2.0] {
-            assert!(clear_roots(&circle, [0.1, 4.0], &at(x), 1e-9).is_none());
+            assert!(clear_roots(&circle, [-0.1, 4.0], &at(x), 1e-9).is_none());
         }
         assert!(clear_roots(&circle, [TAU / 4.0, 4.0], &at(0.0), 1e-9).is_none());
     }

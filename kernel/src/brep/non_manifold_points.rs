@@ -7,11 +7,11 @@
 
 use super::Brep;
 use super::boundary_input::{BoundaryInput, Names};
+use super::bounding_box::face_bounds;
 use super::locate::{Locator, PointLocation};
 use super::shells::Fans;
 use super::topology::{EdgeId, FaceId, NonManifoldPoint};
-use crate::geometry::bounds::{Aabb, bounds};
-use crate::geometry::surface::Surface;
+use crate::geometry::bounds::Aabb;
 use crate::geometry::vector::rounded;
 use crate::number::float::Float;
 use crate::number::predicates::Predicates;
@@ -126,7 +126,7 @@ struct Faces<'a, N: Float = f64> {
 enum SurfaceFaces {
     /// In the order of their ids.
     Listed(Vec<FaceId>),
-    /// In a tree of boxes, where they are many and lie within the boxes of their edges.
+    /// In a tree of boxes, where they are many.
     Indexed(RTree<FaceBox>),
 }
 
@@ -141,15 +141,13 @@ impl<'a, N: Float> Faces<'a, N> {
         for (patch, face) in brep.geometry.patches.iter().zip(brep.topology.face_ids()) {
             listed[patch.surface].push(face);
         }
-        let of_surface = listed.into_iter().map(|faces| match faces.as_slice() {
-            [first, ..] if faces.len() > FEW && lies_between_edges(brep.surface(*first)) => {
-                let leaf = |&face: &FaceId| {
-                    let Aabb { min, max } = box_of_edges(brep, face).grown(resolution);
-                    GeomWithData::new(Rectangle::from_corners(min, max), face)
-                };
-                SurfaceFaces::Indexed(RTree::bulk_load(faces.iter().map(leaf).collect()))
-            }
-            _ => SurfaceFaces::Listed(faces),
+        let leaf = |face: FaceId| {
+            let Aabb { min, max } = face_bounds(brep, face).grown(resolution);
+            GeomWithData::new(Rectangle::from_corners(min, max), face)
+        };
+        let of_surface = listed.into_iter().map(|faces| match faces.len() > FEW {
+            true => SurfaceFaces::Indexed(RTree::bulk_load(faces.into_iter().map(leaf).collect())),
+            false => SurfaceFaces::Listed(faces),
         });
         Self {
             of_surface: of_surface.collect(),
@@ -171,21 +169,4 @@ impl<'a, N: Float> Faces<'a, N> {
             }
         }
     }
-}
-
-/// Whether every point of a face of a surface lies on a straight line of the surface between two
-/// points of its edges.
-fn lies_between_edges<N: Float>(surface: &Surface<N>) -> bool {
-    match surface {
-        Surface::Plane(_) | Surface::Cylinder(_) | Surface::EllipticCylinder(_) => true,
-        // An apex may be inside a face.
-        Surface::Cone(_) | Surface::EllipticCone(_) => false,
-        Surface::Sphere(_) | Surface::Torus(_) | Surface::Ellipsoid(_) => false,
-    }
-}
-
-fn box_of_edges<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
-    let boxes = brep.topology.edges_of(face);
-    let boxes = boxes.map(|edge| bounds(brep.curve(edge), brep.range(edge)));
-    boxes.fold(Aabb::EMPTY, |all, b| all.hull(&b))
 }

@@ -50,9 +50,9 @@ fn torus_distance(p: &Vector3<f64>, d: &Vector3<f64>, [major, minor]: [f64; 2]) 
     }
 }
 
-/// The parameters in (-half, half) at which the line `o + t d` crosses a torus about z. The sign is
-/// that of the distance. The roots of each derivative of the implicit quartic separate those of the
-/// previous one, starting with the quadratic one.
+/// The parameters in (-half, half) at which the line `o + t d` crosses a torus about z: where its
+/// distance from the torus changes sign. The roots of each derivative of the implicit quartic separate
+/// those of the derivative before it, from the second derivative on.
 pub(super) fn torus_crossings(
     o: &Vector3<f64>,
     d: &Vector3<f64>,
@@ -75,7 +75,8 @@ pub(super) fn torus_crossings(
     roots.into_iter().filter(|t| !t.is_nan())
 }
 
-/// Sets the roots of a function in (-half, half), given where it turns. Others stay as they are.
+/// Writes the roots of a function in (-half, half), which is monotone between its turning points. An
+/// entry without a root keeps its value.
 fn between(
     turns: impl Iterator<Item = f64>,
     function: &impl Fn(f64) -> ValueAndSlope,
@@ -91,8 +92,8 @@ fn between(
     }
 }
 
-/// The point between two others at which a function changes sign, to the last digit: Newton's
-/// method, with a bisection wherever a step leaves the range or is not half of the one before.
+/// The point between two others at which a function changes sign, to the last digit. A step of Newton's
+/// method that leaves the range, or is longer than half the step before, is replaced by a bisection.
 fn crossing(f: &impl Fn(f64) -> ValueAndSlope, mut lo: f64, mut hi: f64) -> Option<f64> {
     let rising = f(hi).value > 0.0;
     if rising == (f(lo).value > 0.0) {
@@ -102,6 +103,9 @@ fn crossing(f: &impl Fn(f64) -> ValueAndSlope, mut lo: f64, mut hi: f64) -> Opti
     let mut t = 0.5 * (lo + hi);
     while lo < t && t < hi {
         let ValueAndSlope { value, slope } = f(t);
+        if value == 0.0 {
+            return Some(t);
+        }
         if (value > 0.0) == rising {
             hi = t;
         } else {

@@ -1,10 +1,10 @@
 //! Groups the loops of one surface into the regions that they bound.
 //!
-//! From each loop a path runs over the surface to its end: along a line of a plane, a ruling of a
-//! cylinder or a cone, a meridian of a torus that reaches its axis, a great circle of a sphere to a
-//! fixed point. Between entering the boundary
-//! and leaving it the path is in one region, so the two loops that it crosses bound the same
-//! region. Every loop of these surfaces separates the surface (Jordan), so these pairs connect all
+//! From each loop a path runs over the surface: along a line of a plane, a ruling of a cylinder or a
+//! cone, a meridian of a torus that reaches its axis, a great circle of a sphere to a fixed point. On a
+//! plane or a cylinder with many edges it ends at the next loop, otherwise at the end of the surface.
+//! Between entering the boundary and leaving it the path is in one region, so the two loops that it
+//! crosses bound the same region. Every loop of these surfaces separates the surface (Jordan), so these pairs connect all
 //! loops of a region. On a ring torus both circles through each loop are followed, and paths to the
 //! first loop.
 

@@ -15,8 +15,8 @@ use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
-/// ∫ G du and ∫ du over a piece of an edge; `None` where quadrature has to give them. A piece of a
-/// circle that is much larger than the face's surroundings would lose digits, and is left to it.
+/// ∫ G du and ∫ du over a piece of an edge; `None` if there is no closed form, or if digits would cancel
+/// in it.
 pub(super) fn along_edge<N: Float>(
     ground: &Ground<N>,
     amid: &Amid<N>,
@@ -55,7 +55,7 @@ pub(super) fn along_edge<N: Float>(
     }
 }
 
-/// The radius, in sizes of the part, up to which the digits of a circle suffice.
+/// The largest radius of a circle, relative to the part's size. On a larger circle digits cancel.
 const LARGEST: f64 = 4.0;
 
 /// A piece of an edge.
@@ -209,7 +209,7 @@ fn parallel<N: Float>(
     Some([a, h, x, y, z, sign * N::TWO * arc.half])
 }
 
-/// The ratio of a parallel's radius to its error from which on it is no point.
+/// The least ratio of a parallel's radius to its error. A smaller parallel may be a point.
 const FEW: f64 = 256.0;
 
 /// The integral over u in u - δ..u + δ and over v in a range on a surface of revolution. The integral
@@ -238,7 +238,7 @@ fn over_parallel<N: Float>(ground: &Ground<N>, u: N, half: N, range: [N; 2]) -> 
     sum
 }
 
-/// The integral over ranges of u and v; `None` where quadrature has to give it.
+/// The integral over ranges of u and v; `None` if there is no closed form.
 pub(super) fn over_ranges<N: Float>(
     ground: &Ground<N>,
     [from, to]: [N; 2],

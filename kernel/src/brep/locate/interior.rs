@@ -42,7 +42,7 @@ struct Way<N: Float = f64> {
 
 impl<N: Float> FaceLocator<'_, N> {
     /// A point inside the face, at least `away` from its boundary along a path. `None` for a face
-    /// unboundedary, and if no path finds one.
+    /// without edges, and if no path finds one.
     pub fn interior(&self, away: N) -> Option<Point3<N>> {
         let step = (self.arcs.all.len() / ARCS).max(1);
         let starts = STARTS.into_iter().flat_map(|part| {

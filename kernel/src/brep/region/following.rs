@@ -77,15 +77,17 @@ impl<N: Float> Sorter<'_, N> {
         true
     }
 
-    /// Follows a straight path until it is beyond the loop that it starts on and outside of the
-    /// loop's region, and joins the loops that it crosses. Returns false if anything is unclear, or
-    /// if the path ends in the region.
+    /// Follows a straight path to a point that is beyond the box of the starting loop and outside the
+    /// region of that loop. Joins the loops that the path crosses. Returns false if anything is
+    /// unclear, or if the path ends in the region.
     ///
-    /// Let a loop's reach be that of its points in the direction of all paths. A path that has left
-    /// the region beyond the reach of its own loop has left it through a loop of greater reach,
-    /// through the outermost one, or through its own, which then is the outermost one: by Jordan's
-    /// theorem a path that leaves a region through a loop returns through the same. So all loops of
-    /// a region are joined to its outermost one, by induction from the greatest reach.
+    /// This joins all loops of a region. All paths have one direction. Let the reach of a loop be
+    /// its greatest coordinate in that direction. By Jordan's theorem, a path that leaves a region
+    /// through a loop can return through that loop only. So the last loop through which the path
+    /// left the region separates the region from the path's end. If that loop is neither the
+    /// starting loop nor the outermost one, it encloses the end, and its reach is greater than that
+    /// of the starting loop. If it is the starting loop, that is the outermost one. By induction from
+    /// the greatest reach, every loop is joined to the outermost one.
     pub(super) fn follow_to_next(
         &mut self,
         ring: usize,

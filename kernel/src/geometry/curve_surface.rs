@@ -11,7 +11,6 @@ use crate::number::float::Float;
 use crate::number::function::{F64Filter, Function};
 use crate::number::interval::Interval;
 use crate::number::jet::Jet;
-use crate::number::predicates::CLOSE;
 use crate::number::probes::probes;
 use crate::number::roots::{
     Inseparable, NearMiss, Root, RootKind, Roots, isolate, isolate_closely,
@@ -131,8 +130,7 @@ pub fn roots<N: Float>(
     surface: &Surface<N>,
     resolution: N,
 ) -> Result<CurveSurfaceRoots<N>, Inseparable> {
-    let reach = N::from_f64(CLOSE) * resolution;
-    if let Some(known) = closed_form::clear_roots(curve, range, surface, reach) {
+    if let Some(known) = closed_form::clear_roots(curve, range, surface, resolution) {
         return Ok(known);
     }
     if let Some(known) = rounded_roots(curve, range, surface, resolution) {

@@ -6,10 +6,12 @@
 
 use premio_kernel::number::bisection::{ValueAndSlope, bisect_newton};
 use premio_kernel::number::predicates::Compare;
+use std::cell::Cell;
 
 /// A polynomial, `k[i]` the coefficient of the i-th power.
 pub type QuarticPolynomial = [f64; 5];
 
+/// The value and the derivative of a polynomial.
 fn value(k: &QuarticPolynomial, degree: usize, x: f64) -> ValueAndSlope {
     let (mut v, mut d) = (0.0, 0.0);
     for &c in k[..=degree].iter().rev() {
@@ -86,6 +88,23 @@ pub fn crossings(
     }
 }
 
+/// The roots of the polynomial in [lo, hi], in increasing order; `None` unless it is clearly not zero at
+/// both ends and at all its extrema. `is_clear` decides, from a parameter and the value there.
+pub fn clear_roots(
+    k: &QuarticPolynomial,
+    range: [f64; 2],
+    is_clear: &impl Fn(f64, f64) -> bool,
+) -> Option<Vec<f64>> {
+    let clear = Cell::new(range.iter().all(|&t| is_clear(t, value(k, 4, t).value)));
+    let mut roots = Vec::new();
+    let extremum = |t, value| {
+        clear.set(clear.get() && is_clear(t, value));
+        false
+    };
+    crossings(k, range, &extremum, &mut |t| roots.push(t));
+    clear.get().then_some(roots)
+}
+
 /// The sign changes of a polynomial between the roots of its derivative.
 fn simple_roots(k: &QuarticPolynomial, degree: usize, lo: f64, hi: f64, splits: &Few) -> Few {
     let mut roots = Few::default();
@@ -136,6 +155,16 @@ mod tests {
                 prop_assert!((a - b).abs() < 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn a_double_root_is_not_clear() {
+        let touching = product(&[1.0, 1.0, -2.0]);
+        let is_clear = |_, value: f64| value.abs() > 1e-9;
+        assert_eq!(clear_roots(&touching, [0.0, 3.0], &is_clear), None);
+        assert_eq!(clear_roots(&touching, [-2.0, 0.0], &is_clear), None);
+        let found = clear_roots(&touching, [-3.0, 0.0], &is_clear).unwrap_or_default();
+        assert!(found.len() == 1 && (found[0] + 2.0).abs() < 1e-14);
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! Intersections of lines of sight with whole surfaces.
 
+use crate::image_curve::polynomial::{QuarticPolynomial, clear_roots};
 use crate::ray_casting::{OriginIncidence, SightLine};
 use crate::scene::Scene;
 use nalgebra::Vector3;
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::surface::{Surface, Torus};
+use premio_kernel::number::bisection::ValueAndSlope;
 use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
 use premio_kernel::number::jet::Jet;
@@ -168,8 +170,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The roots of the torus's quartic (|q|² + R² - r²)² = 4 R² (x² + y²) along the line, less
-    /// the known ones.
+    /// The intersections of a line with a torus, without the known ones at its origin.
     fn torus(
         &self,
         s: &Torus,
@@ -191,48 +192,68 @@ impl Scene<'_> {
         if lo.reaches(hi) {
             return;
         }
-        let (major, minor) = (s.major, s.minor);
-        // s² + b s + c with c the value at the origin, then the quartic's coefficients.
-        let b = 2.0 * q.dot(w);
-        let c = q.norm_squared() + major * major - minor * minor;
-        let k = 4.0 * major * major;
-        let quartic = [
-            c * c - k * (q.x * q.x + q.y * q.y),
-            2.0 * b * c - 2.0 * k * (q.x * w.x + q.y * w.y),
-            b * b + 2.0 * c - k * (w.x * w.x + w.y * w.y),
-            2.0 * b,
-            1.0,
-        ];
         let known = match own {
-            OriginIncidence::No => 0,
+            OriginIncidence::No => return self.whole_torus(s, [q, w], [lo, hi], found),
             OriginIncidence::Through => 1,
             OriginIncidence::Tangent => 2,
         };
-        if known == 0 {
-            let q0 = [q.x, q.y, q.z];
-            let surface = Surface::Torus(Torus {
-                frame: Frame::world(),
-                ..*s
-            });
-            let f = |t: Interval| {
-                let p: [Jet<Interval>; 3] =
-                    std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
-                surface.level(p)
-            };
-            for [lo, hi] in self.parts_off_poles(s, q, w, [lo, hi], found) {
-                if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
-                    found.push(0.5 * (lo + hi), true);
-                }
-            }
+        self.rest_of_torus(s, [q, w], [lo, hi], known, found);
+    }
+
+    /// The intersections of a range of the line q + t w with a torus.
+    fn whole_torus(
+        &self,
+        s: &Torus,
+        [q, w]: [&Vector3<f64>; 2],
+        [lo, hi]: [f64; 2],
+        found: &mut LineHits,
+    ) {
+        if let Some(clear) = clear_torus_hits(s, [q, w], [lo, hi], self.resolution) {
+            clear.into_iter().for_each(|at| found.push(at, false));
             return;
         }
+        let q0 = [q.x, q.y, q.z];
+        let surface = Surface::Torus(Torus {
+            frame: Frame::world(),
+            ..*s
+        });
+        let f = |t: Interval| {
+            let p: [Jet<Interval>; 3] =
+                std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
+            surface.level(p)
+        };
+        for [lo, hi] in self.parts_off_poles(s, q, w, [lo, hi], found) {
+            if self.isolated(&f, lo, hi, found) == Roots::Everywhere {
+                found.push(0.5 * (lo + hi), true);
+            }
+        }
+    }
+
+    /// The intersections of a range of the line q + t w with a torus, less the `known` ones at t = 0.
+    fn rest_of_torus(
+        &self,
+        s: &Torus,
+        [q, w]: [&Vector3<f64>; 2],
+        [lo, hi]: [f64; 2],
+        known: usize,
+        found: &mut LineHits,
+    ) {
+        let quartic = torus_quartic(s, q, w);
         // The gradient of the quartic is 8 R r ρ; on a ring ρ is at least R - r.
+        let reach = s.circumradius() + 4.0 * self.resolution;
         let least = match s.is_ring() {
-            true => major - minor,
+            true => s.major - s.minor,
             false => q.x.hypot(q.y).max(ROUNDING.sqrt() * reach),
         };
-        let size = 8.0 * major.abs() * minor * least / reach.powi(known as i32);
-        let rest = &quartic[known..];
+        let size = 8.0 * s.major.abs() * s.minor * least / reach.powi(known as i32);
+        let mut rest: QuarticPolynomial = [0.0; 5];
+        rest[..5 - known].copy_from_slice(&quartic[known..]);
+        let is_clear = |_, value: f64| (value / size).abs().is_beyond(CLEAR * self.resolution);
+        let clear = s.is_ring().then(|| clear_roots(&rest, [lo, hi], &is_clear));
+        if let Some(clear) = clear.flatten() {
+            clear.into_iter().for_each(|at| found.push(at, false));
+            return;
+        }
         let f = |t: Interval| {
             let t = Jet::variable(t);
             let zero = Jet::constant(0.0);
@@ -296,5 +317,137 @@ impl Scene<'_> {
             }
         }
         zeros
+    }
+}
+
+/// The multiple of the resolution from which on a distance from a torus is clear.
+const CLEAR: f64 = 128.0;
+/// The least sine of the angle at which a line crosses a torus clearly.
+const STEEP: f64 = 1.0 / 128.0;
+/// A bound on the rounding errors of a quartic, relative to those of its largest term.
+const ROUNDINGS: f64 = 64.0;
+
+/// The intersections of a range of the line q + t w with a ring torus about z, in increasing order;
+/// `None` unless all of them are crossings, and the line is not close to the torus at the ends of the
+/// range, or where it turns away from it.
+fn clear_torus_hits(
+    s: &Torus,
+    [q, w]: [&Vector3<f64>; 2],
+    [lo, hi]: [f64; 2],
+    resolution: f64,
+) -> Option<Vec<f64>> {
+    let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+    let c = q + w * middle;
+    let size = c.norm() + half + s.circumradius();
+    // The quartic is a distance from the torus times 8 R r ρ or more.
+    let noise = ROUNDINGS * f64::EPSILON * size.powi(4);
+    let least = 8.0 * s.major * s.minor * (s.major - s.minor);
+    if !s.is_ring() || !noise.is_short_of(resolution * least) {
+        return None;
+    }
+    let distance = |t: f64| {
+        let p = c + w * t;
+        let rho = p.x.hypot(p.y);
+        let across = rho - s.major;
+        let tube = across.hypot(p.z);
+        ValueAndSlope {
+            value: tube - s.minor,
+            slope: (across * (p.x * w.x + p.y * w.y) / rho + p.z * w.z) / tube,
+        }
+    };
+    let is_clear = |t: f64, _| distance(t).value.abs().is_beyond(CLEAR * resolution);
+    let roots = clear_roots(&torus_quartic(s, &c, w), [-half, half], &is_clear)?;
+    let polished = |t: f64| {
+        let ValueAndSlope { value, slope } = distance(t);
+        slope
+            .abs()
+            .is_beyond(STEEP)
+            .then(|| middle + (t - value / slope))
+    };
+    roots.into_iter().map(polished).collect()
+}
+
+/// The quartic (|p|² + R² - r²)² - 4 R² (x² + y²) along the line p = q + t w.
+fn torus_quartic(s: &Torus, q: &Vector3<f64>, w: &Vector3<f64>) -> QuarticPolynomial {
+    // |p|² + R² - r² = t² + b t + c.
+    let b = 2.0 * q.dot(w);
+    let c = q.norm_squared() + s.major * s.major - s.minor * s.minor;
+    let k = 4.0 * s.major * s.major;
+    [
+        c * c - k * (q.x * q.x + q.y * q.y),
+        2.0 * b * c - 2.0 * k * (q.x * w.x + q.y * w.y),
+        b * b + 2.0 * c - k * (w.x * w.x + w.y * w.y),
+        2.0 * b,
+        1.0,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const RESOLUTION: f64 = 1e-10;
+
+    /// The roots of the signed distance, by isolation.
+    fn isolated(s: &Torus, [q, w]: [&Vector3<f64>; 2], range: [f64; 2]) -> Vec<f64> {
+        let surface = Surface::Torus(*s);
+        let f = |t: Interval| {
+            let p: [Jet<Interval>; 3] =
+                std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q[i]));
+            surface.level(p)
+        };
+        match isolate(&f, &range, RESOLUTION) {
+            Roots::At { roots, .. } => roots.iter().map(|root| root.t).collect(),
+            Roots::Everywhere => Vec::new(),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn clear_hits_are_those_of_root_isolation(
+            q in prop::array::uniform3(-1.5..1.5_f64),
+            w in prop::array::uniform3(-1.0..1.0_f64),
+            minor in 0.01..0.99_f64,
+        ) {
+            let [q, w] = [Vector3::from(q), Vector3::from(w)];
+            prop_assume!(w.norm() > 0.1);
+            let w = w.normalize();
+            let s = Torus { frame: Frame::world(), major: 1.0, minor };
+            let range = [-3.0, 3.0];
+            if let Some(found) = clear_torus_hits(&s, [&q, &w], range, RESOLUTION) {
+                let known = isolated(&s, [&q, &w], range);
+                prop_assert_eq!(found.len(), known.len());
+                for (x, y) in found.iter().zip(&known) {
+                    prop_assert!((x - y).abs() < 1e-12, "{x} {y}");
+                }
+            }
+        }
+    }
+
+    /// A line along x at the height of the tube's top, and the same a little lower.
+    #[test]
+    fn a_line_along_the_top_of_a_torus_is_not_clear() {
+        let s = Torus {
+            frame: Frame::world(),
+            major: 2.0,
+            minor: 0.5,
+        };
+        let w = Vector3::x();
+        let hits = |z: f64| {
+            let q = Vector3::new(0.0, 0.0, z);
+            clear_torus_hits(&s, [&q, &w], [-4.0, 4.0], RESOLUTION)
+        };
+        assert_eq!(hits(0.5), None);
+        assert_eq!(hits(0.5 - 1e-9), None);
+        assert_eq!(hits(0.6).map(|hits| hits.len()), Some(0));
+        // At half the height the tube is cut at 2 ± √(1/4 - 1/16).
+        let across = (0.25_f64 - 0.0625).sqrt();
+        let places = [-2.0 - across, -2.0 + across, 2.0 - across, 2.0 + across];
+        let found = hits(0.25).unwrap_or_default();
+        assert_eq!(found.len(), 4);
+        for (x, y) in found.iter().zip(places) {
+            assert!((x - y).abs() < 1e-14, "{x} {y}");
+        }
     }
 }

@@ -73,11 +73,9 @@ fn polished<N: Float>(t: N, curve: &Curve<N>, surface: &Surface<N>) -> Option<Ro
     let point = curve.jet(t);
     let speed = Vector3::from(point.map(|x| x.d)).length();
     let level = surface.level(point);
-    if !(speed <= N::from_f64(CLOSE) * level.d.abs()) {
-        return None;
-    }
+    let is_clear = speed <= N::from_f64(CLOSE) * level.d.abs();
     let t = t - level.v / level.d;
-    Some(Root {
+    is_clear.then_some(Root {
         t,
         lo: t,
         hi: t,

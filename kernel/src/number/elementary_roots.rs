@@ -1,7 +1,7 @@
 //! The roots of linear and quadratic polynomials and of a constant plus a wave, in closed form.
 //!
-//! Each function reports the roots in a range, with whether the graph crosses zero there clearly. It
-//! does not where an extremum is within the tolerance.
+//! Each function reports the roots in a range, and whether each is a clear crossing. A root next to an
+//! extremum within the tolerance is none.
 
 use super::float::Float;
 

@@ -212,14 +212,13 @@ impl Scene<'_> {
             clear.into_iter().for_each(|at| found.push(at, false));
             return;
         }
-        let q0 = [q.x, q.y, q.z];
         let surface = Surface::Torus(Torus {
             frame: Frame::world(),
             ..*s
         });
         let f = |t: Interval| {
             let p: [Jet<Interval>; 3] =
-                std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q0[i]));
+                std::array::from_fn(|i| Jet::variable(t).scale(w[i]) + Jet::constant(q[i]));
             surface.level(p)
         };
         for [lo, hi] in self.parts_off_poles(s, q, w, [lo, hi], found) {
@@ -249,7 +248,8 @@ impl Scene<'_> {
         let mut rest: QuarticPolynomial = [0.0; 5];
         rest[..5 - known].copy_from_slice(&quartic[known..]);
         let is_clear = |_, value: f64| (value / size).abs().is_beyond(CLEAR * self.resolution);
-        let clear = s.is_ring().then(|| clear_roots(&rest, [lo, hi], &is_clear));
+        let is_accurate = is_accurate(s, q.norm() + reach, self.resolution);
+        let clear = is_accurate.then(|| clear_roots(&rest, [lo, hi], &is_clear));
         if let Some(clear) = clear.flatten() {
             clear.into_iter().for_each(|at| found.push(at, false));
             return;
@@ -320,16 +320,16 @@ impl Scene<'_> {
     }
 }
 
-/// The multiple of the resolution from which on a distance from a torus is clear.
+/// The least distance from a torus at which a line is clear of it, in multiples of the resolution.
 const CLEAR: f64 = 128.0;
 /// The least sine of the angle at which a line crosses a torus clearly.
 const STEEP: f64 = 1.0 / 128.0;
 /// A bound on the rounding errors of a quartic, relative to those of its largest term.
 const ROUNDINGS: f64 = 64.0;
 
-/// The intersections of a range of the line q + t w with a ring torus about z, in increasing order;
-/// `None` unless all of them are crossings, and the line is not close to the torus at the ends of the
-/// range, or where it turns away from it.
+/// The intersections of a range of the line q + t w with a ring torus about z, in increasing order.
+/// `None` unless each is a crossing, and the line is clear of the torus at both ends of the range and at
+/// each extremum of the quartic.
 fn clear_torus_hits(
     s: &Torus,
     [q, w]: [&Vector3<f64>; 2],
@@ -338,11 +338,7 @@ fn clear_torus_hits(
 ) -> Option<Vec<f64>> {
     let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
     let c = q + w * middle;
-    let size = c.norm() + half + s.circumradius();
-    // The quartic is a distance from the torus times 8 R r ρ or more.
-    let noise = ROUNDINGS * f64::EPSILON * size.powi(4);
-    let least = 8.0 * s.major * s.minor * (s.major - s.minor);
-    if !s.is_ring() || !noise.is_short_of(resolution * least) {
+    if !is_accurate(s, c.norm() + half + s.circumradius(), resolution) {
         return None;
     }
     let distance = |t: f64| {
@@ -365,6 +361,16 @@ fn clear_torus_hits(
             .then(|| middle + (t - value / slope))
     };
     roots.into_iter().map(polished).collect()
+}
+
+/// Whether the quartic gives the distance from a torus to less than the resolution, at points whose
+/// coordinates, and those of the line's origin, are below `size`. It does not if the tube is thin, or if
+/// the hole is small.
+fn is_accurate(s: &Torus, size: f64, resolution: f64) -> bool {
+    let noise = ROUNDINGS * f64::EPSILON * size.powi(4);
+    // Next to the torus the quartic is the distance times 8 R r ρ, and ρ is at least R - r.
+    let least = 8.0 * s.major * s.minor * (s.major - s.minor);
+    s.is_ring() && noise.is_short_of(resolution * least)
 }
 
 /// The quartic (|p|² + R² - r²)² - 4 R² (x² + y²) along the line p = q + t w.
@@ -441,6 +447,15 @@ mod tests {
         assert_eq!(hits(0.5), None);
         assert_eq!(hits(0.5 - 1e-9), None);
         assert_eq!(hits(0.6).map(|hits| hits.len()), Some(0));
+        assert!(!is_accurate(&Torus { minor: 1e-5, ..s }, 8.0, RESOLUTION));
+        assert!(!is_accurate(
+            &Torus {
+                minor: 2.0 - 1e-9,
+                ..s
+            },
+            8.0,
+            RESOLUTION
+        ));
         // At half the height the tube is cut at 2 ± √(1/4 - 1/16).
         let across = (0.25_f64 - 0.0625).sqrt();
         let places = [-2.0 - across, -2.0 + across, 2.0 - across, 2.0 + across];

@@ -151,3 +151,27 @@ fn a_circle_of_many_points_is_followed() {
     let part = part("P = CYL(R=1, H=1)", Format::Padl).unwrap();
     assert_eq!(fault(&part, 1e-8 / part.bounds.diagonal()), None);
 }
+
+/// The permitted length of a triangle's side is proportional to the square root of the radius of
+/// curvature, and the ring's is that of the tube times up to 100,000.
+#[test]
+fn a_thin_ring_takes_no_more_triangles_than_a_thick_one() {
+    let count = |minor: &str, cut: &str| {
+        let text = format!("P = TOR(RMAJ=50, RMIN={minor}){cut}");
+        let part = part(&text, Format::Padl).unwrap();
+        assert_eq!(fault(&part, 1e-4), None, "{text}");
+        let accuracy = Accuracy {
+            deviation: 0.01,
+            angle: 0.5,
+        };
+        let mesh = tessellate(&part.brep, &accuracy, part.resolution).unwrap();
+        mesh.triangles.len()
+    };
+    for cut in ["", " DIF BLO(X=100, Y=100, Z=10) AT (MOVZ=-5)"] {
+        let thick = count("5", cut);
+        for minor in ["0.1", "0.01", "0.0005"] {
+            let thin = count(minor, cut);
+            assert!(2 * thin < 3 * thick, "{minor}{cut}: {thin} for {thick}");
+        }
+    }
+}

@@ -36,7 +36,8 @@ pub(super) enum Chart {
     /// Stereographic projection of the unit sphere of which an ellipsoid is the image, with axes in the
     /// ellipsoid's frame.
     Ellipsoid(Ellipsoid, Frame, Option<f64>),
-    /// Lengths along the parallels and the tube, measured from the seams.
+    /// Angles about the axis and about the tube from the seams, in steps of the accuracy. A triangle
+    /// of a good shape in the chart is as long in each direction as the curvature there permits.
     Torus(Torus, Seams),
     /// Stereographic projection of the unit sphere to which a torus that reaches its axis is mapped.
     Sheet(Torus, Frame, Option<f64>),
@@ -49,6 +50,18 @@ pub(super) struct Seams {
     pub at: [f64; 2],
     /// The number of steps into which each angle is divided along the other's seam.
     pub steps: [u32; 2],
+}
+
+impl Seams {
+    /// The unit of angle `i` in the chart.
+    pub fn steps_per_radian(&self, i: usize) -> f64 {
+        self.round(i) / TAU
+    }
+
+    /// The length of a whole turn of angle `i` in the chart.
+    pub fn round(&self, i: usize) -> f64 {
+        f64::from(self.steps[i])
+    }
 }
 
 impl Chart {
@@ -125,8 +138,8 @@ impl Chart {
             Self::Sheet(s, f, _) => projected(f, &SphericalMap::Sheet(*s).direction(p)),
             Self::Torus(s, seams) => {
                 let [u, v] = Surface::Torus(*s).parameters(p);
-                let from = |i: usize, x: f64| turn(x - seams.at[i]);
-                Point2::new(s.major * from(0, u), s.minor * from(1, v))
+                let from = |i: usize, x: f64| seams.steps_per_radian(i) * turn(x - seams.at[i]);
+                Point2::new(from(0, u), from(1, v))
             }
         }
     }
@@ -149,8 +162,8 @@ impl Chart {
             Self::Ellipsoid(s, f, _) => SphericalMap::Ellipsoid(*s).point(&unprojected(f, x)),
             Self::Sheet(s, f, _) => SphericalMap::Sheet(*s).point(&unprojected(f, x)),
             Self::Torus(s, seams) => {
-                let (u, v) = (x.x / s.major + seams.at[0], x.y / s.minor + seams.at[1]);
-                Surface::Torus(*s).point(u, v)
+                let angle = |i: usize| x[i] / seams.steps_per_radian(i) + seams.at[i];
+                Surface::Torus(*s).point(angle(0), angle(1))
             }
         }
     }

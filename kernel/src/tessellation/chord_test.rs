@@ -3,7 +3,7 @@
 use super::Accuracy;
 use super::charts::Chart;
 use crate::geometry::surface::Surface;
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector3};
 
 /// The test whether sides and triangles approximate a surface.
 pub(super) struct ChordTest<'a> {
@@ -22,15 +22,20 @@ pub(super) const APEX: f64 = 1.0 / (1 << 16) as f64;
 impl ChordTest<'_> {
     /// Whether a side or a triangle with these corners is within the accuracy of the surface.
     /// `middle` is the position in the chart of the surface point tested. The corners must lie
-    /// close to the tangent plane there, and the normal must turn little between it and them.
+    /// close to the tangent plane there, and the normal must turn little between it and them. The
+    /// corners' own middle must lie close to the surface as well: where a thin tube bends sideways,
+    /// a chord leaves the tube within the tangent plane.
     pub fn contains(&self, middle: &Point2<f64>, corners: &[Point3<f64>]) -> bool {
         let on = self.chart.lift(middle);
         let normal = self.surface.normal(&on);
-        corners.iter().all(|p| {
-            let turned = || normal.angle(&self.surface.normal(p));
-            normal.dot(&(on - p)).abs() <= self.accuracy.deviation
-                && (self.is_apex(p) || turned() <= self.accuracy.angle)
-        })
+        let sum: Vector3<f64> = corners.iter().map(|p| p.coords).sum();
+        let flat = Point3::from(sum / corners.len() as f64);
+        self.surface.distance(&flat).abs() <= self.accuracy.deviation
+            && corners.iter().all(|p| {
+                let turned = || normal.angle(&self.surface.normal(p));
+                normal.dot(&(on - p)).abs() <= self.accuracy.deviation
+                    && (self.is_apex(p) || turned() <= self.accuracy.angle)
+            })
     }
 
     /// The position at which a side between two chart positions, which stand for `points`, leaves

@@ -263,11 +263,11 @@ impl<'a> Builder<'a> {
     /// shows at which of two poles in one point the chord ends.
     fn places(&self, edge: EdgeId, nodes: [Node; 2]) -> [Point2<f64>; 2] {
         let mut ends = nodes.map(|n| self.fit.chart.map(&self.lines.points[n.point as usize]));
-        if let Chart::Torus(torus, _) = self.fit.chart {
+        if let Chart::Torus(_, seams) = self.fit.chart {
             let middle = 0.5 * (nodes[0].t + nodes[1].t);
             let middle = self.fit.chart.map(&self.brep.curve(edge).point(middle));
             for end in &mut ends {
-                *end = continued_from(torus, *end, &middle);
+                *end = continued_from(seams, *end, &middle);
             }
         }
         if let (Chart::Sheet(torus, ..), Some([upper, lower])) =
@@ -453,8 +453,8 @@ impl<'a> Builder<'a> {
             return;
         }
         let mut on = self.fit.chart.map(&curve.point(t));
-        if let Chart::Torus(torus, _) = self.fit.chart {
-            on = continued_from(torus, on, &nalgebra::center(&ends[0], &ends[1]));
+        if let Chart::Torus(_, seams) = self.fit.chart {
+            on = continued_from(seams, on, &nalgebra::center(&ends[0], &ends[1]));
         }
         let height = |x: &Point2<f64>| (ends[1] - ends[0]).perp(&(x - ends[0]));
         let (of_corner, of_edge) = (height(&corner.at), height(&on));
@@ -469,7 +469,7 @@ impl<'a> Builder<'a> {
 
     /// Adds the corners along both seams, and identifies the sides across them.
     fn add_seams(&mut self, torus: &Torus, seams: &Seams) {
-        let lengths = [TAU * torus.major, TAU * torus.minor];
+        let lengths = [0, 1].map(|i| seams.round(i));
         let origin = Surface::Torus(*torus).point(seams.at[0], seams.at[1]);
         let origin = self.lines.add(origin);
         for i in 0..2 {
@@ -481,7 +481,7 @@ impl<'a> Builder<'a> {
                 p[i] = beyond;
                 p
             };
-            let mut marks = self.marks_along(i, lengths[other], seams.steps[other]);
+            let mut marks = self.marks_along(i, seams.steps[other]);
             for mark in &mut marks {
                 if mark.point.is_none() {
                     let p = self.fit.chart.lift(&at(mark.along, 0.0));
@@ -518,7 +518,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The points along a seam, in order: those of edges that cross it, and steps in between.
-    fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<SeamMark> {
+    fn marks_along(&self, seam: usize, steps: u32) -> Vec<SeamMark> {
         let other = 1 - seam;
         let corners = self.domain.net.vertices();
         let crossing = corners.filter(|v| v.data().at[seam] == 0.0);
@@ -527,12 +527,11 @@ impl<'a> Builder<'a> {
                 along: v.data().at[other],
                 point: Some(v.data().point),
             })
-            .filter(|m| m.along > 0.0 && m.along < length)
+            .filter(|m| m.along > 0.0 && m.along < f64::from(steps))
             .collect();
-        let step = length / f64::from(steps);
         let known: Vec<f64> = marks.iter().map(|m| m.along).collect();
-        let between = (1..steps).map(|k| step * f64::from(k));
-        let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED * step);
+        let between = (1..steps).map(f64::from);
+        let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED);
         marks.extend(
             between
                 .filter(clear)
@@ -551,10 +550,10 @@ const END_MARGIN: f64 = 1.0 / 16.0;
 const CROWDED: f64 = 0.4;
 
 /// The position in a torus's chart as continued from a neighbouring one; on a seam exactly.
-fn continued_from(torus: &Torus, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
-    for (i, radius) in [torus.major, torus.minor].into_iter().enumerate() {
-        let length = TAU * radius;
-        if at[i] < ON_SEAM * radius || length - at[i] < ON_SEAM * radius {
+fn continued_from(seams: &Seams, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
+    for i in 0..2 {
+        let (length, near) = (seams.round(i), ON_SEAM * seams.steps_per_radian(i));
+        if at[i] < near || length - at[i] < near {
             at[i] = if from[i] > 0.5 * length { length } else { 0.0 };
         }
     }

@@ -1,7 +1,7 @@
 //! The checker of boundary representations: one named violation for each rule.
 
 use super::Brep;
-use super::cycle_basis;
+use super::cycle_space;
 use super::disjoint_union::Renumbering;
 use super::end_gaps::{EndGap, gaps_at_ends};
 use super::face_integrals::{FaceArea, FaceIntegrals};
@@ -10,7 +10,6 @@ use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::Point3;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// A rule that a boundary breaks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -247,32 +246,11 @@ fn check_loops<N: Float>(brep: &Brep<N>, found: &mut Vec<Violation>) {
 /// Checks the loops of a face against the cycles of its boundary.
 fn check_cycles<N: Float>(brep: &Brep<N>, loops: &[LoopId], found: &mut Vec<Violation>) {
     let t = &brep.topology;
-    let mut number: BTreeMap<EdgeId, usize> = BTreeMap::new();
-    let mut links = Vec::new();
     for &l in loops {
-        for &c in &t.ring(l).coedges {
-            let edge = t.coedge(c).edge;
-            if let Some([a, b]) = t.edge(edge).ends
-                && !number.contains_key(&edge)
-            {
-                number.insert(edge, links.len());
-                links.push([a.index(), b.index()]);
-            }
-        }
-    }
-    // A face with thousands of loops is a graph with as many components, each of which is its own
-    // check.
-    let few = loops.len() <= 64;
-    for &l in loops.iter().filter(|_| few) {
-        let mut edges = BTreeSet::new();
-        for &c in &t.ring(l).coedges {
-            if let Some(&n) = number.get(&t.coedge(c).edge)
-                && !edges.remove(&n)
-            {
-                edges.insert(n);
-            }
-        }
-        if !cycle_basis::is_sum_of_cycles(&links, &edges) {
+        let coedges = t.ring(l).coedges.iter();
+        let ends = coedges.filter_map(|&c| t.edge(t.coedge(c).edge).ends);
+        let edges: Vec<_> = ends.map(|ends| ends.map(|v| v.index())).collect();
+        if !cycle_space::is_sum_of_cycles(&edges) {
             found.push(Violation::LoopNoCycle { ring: l });
         }
     }

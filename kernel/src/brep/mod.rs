@@ -11,7 +11,7 @@ pub mod assembly_error;
 pub mod boundary_input;
 pub mod bounding_box;
 pub mod check;
-mod cycle_basis;
+mod cycle_space;
 pub mod disjoint_union;
 mod end_gaps;
 pub mod face_integrals;

@@ -3,7 +3,9 @@
 
 pub mod brep;
 pub mod colour;
+pub mod concurrency;
 pub mod geometry;
+pub mod hash;
 pub mod motion;
 pub mod number;
 pub mod proof;

@@ -109,7 +109,7 @@ const STAGES: &[(&str, &[&[&str]])] = &[
     (
         "kernel",
         &[
-            &["unit", "colour", "random", "number"],
+            &["unit", "colour", "concurrency", "hash", "random", "number"],
             &["motion"],
             &["geometry"],
             &["proof", "brep"],

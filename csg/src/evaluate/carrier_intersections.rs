@@ -6,15 +6,18 @@
 
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, SolidTree, common};
 use super::close_calls::{Between, Unlisted};
+use super::culling::Culling;
 use super::distinct_surfaces::{Merged, Source, merge};
 use super::error::EvaluationError;
 use super::face_hulls::FaceHull;
 use super::facet_joints::{FacetJoints, PlanePair};
 use super::halfspaces::HalfSpaceModel;
+use super::membership::Membership;
 use super::split_curves::Later;
 use super::vertices::{CornerIndex, VertexMerger};
 use super::wall_joints::WallJoints;
 use crate::tree::Tree;
+use premio_kernel::concurrency;
 use premio_kernel::geometry::bounds::{Aabb, pieces};
 use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::intersect::{Branch, SurfaceIntersection, intersect};
@@ -23,11 +26,12 @@ use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::surface_pair::Carrier;
 use premio_kernel::geometry::trace::BranchPosition;
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::HashSet;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
 /// An arrangement that was built.
 pub(super) struct Arranged<'t, N: Float = f64> {
@@ -52,6 +56,7 @@ pub(super) fn arrange<'t, N: Float>(
     // Faces that nearly intersect are included: a close call is listed on either side of the
     // resolution.
     let reach = predicates.reach();
+    let source = tree;
     let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {
         carriers,
@@ -61,45 +66,57 @@ pub(super) fn arrange<'t, N: Float>(
         calls: Vec::new(),
         tree,
     };
+    let membership = Membership::new(source);
+    let culling = Culling::new(solids, &membership, predicates);
     let mut corners = VertexMerger::new(predicates.resolution());
     let mut joints = Joints {
         walls: WallJoints::new(solids, &found.sides),
         facets: FacetJoints::new(solids, &found.sides, &mut corners, predicates),
     };
-    for (pair, supports) in found.pairs(solids, reach, most)? {
-        let line = found.known_line(
-            pair,
-            &supports,
-            extent,
-            &mut joints.facets,
-            &corners,
-            predicates,
-        );
-        let intersected = match line {
-            Some(line) => SurfaceIntersection {
-                branches: vec![line],
-                ..SurfaceIntersection::default()
-            },
-            None => found.intersected(pair, &sources, extent, &joints.walls, predicates)?,
-        };
-        let kept = found.add_pair(pair, &supports, &intersected, predicates, &mut corners);
-        found.cut_at_corners(kept, joints.facets.corners(pair), &corners, predicates);
-        bounded(found.meetings.len(), most)?;
+    let pairs: Vec<_> = found.pairs(solids, reach, most)?.into_iter().collect();
+    for pairs in pairs.chunks(BATCH) {
+        let intersections = found.intersections(pairs, &sources, extent, predicates);
+        for ((pair, supports), intersected) in pairs.iter().zip(intersections) {
+            let line = found.known_line(
+                *pair,
+                supports,
+                extent,
+                &mut joints.facets,
+                &corners,
+                predicates,
+            );
+            let intersected = match line {
+                Some(line) => SurfaceIntersection {
+                    branches: vec![line],
+                    ..SurfaceIntersection::default()
+                },
+                None => found.placed(*pair, intersected, &joints.walls, predicates)?,
+            };
+            let kept = found.add_pair(
+                *pair,
+                supports,
+                &intersected,
+                &culling,
+                predicates,
+                &mut corners,
+            );
+            found.cut_at_corners(kept, joints.facets.corners(*pair), &corners, predicates);
+            bounded(found.meetings.len(), most)?;
+        }
     }
     found.settle_contacts(predicates);
     let mut later = Later::default();
     let mut entities = found.meetings.len();
-    for i in 0..found.meetings.len() {
-        found.cut_meeting(
-            i,
-            solids,
-            &joints.facets,
-            predicates,
-            &mut corners,
-            &mut later,
-        )?;
-        entities += found.meetings[i].cuts.len();
-        bounded(entities, most)?;
+    let curves: Vec<usize> = (0..found.meetings.len()).collect();
+    for curves in curves.chunks(BATCH) {
+        let splits = predicates.map(curves, CURVES_FOR_A_THREAD, |&i, predicates| {
+            found.splits_of(i, solids, &joints.facets, &corners.all, predicates)
+        });
+        for (&i, splits) in curves.iter().zip(splits) {
+            found.split(i, splits?, predicates, &mut corners, &mut later);
+            entities += found.meetings[i].cuts.len();
+            bounded(entities, most)?;
+        }
     }
     found.calls.append(&mut later.calls);
     // The most accurate come first; the others are moved to them.
@@ -119,6 +136,18 @@ pub(super) fn arrange<'t, N: Float>(
         sources,
     })
 }
+
+/// The number of pairs of surfaces, or of curves, that are intersected before the results are merged.
+const BATCH: usize = 4096;
+
+/// The number of pairs of surfaces that are worth a thread.
+const PAIRS_FOR_A_THREAD: usize = 32;
+
+/// The number of curves that are worth a thread.
+const CURVES_FOR_A_THREAD: usize = 32;
+
+/// An intersection of two surfaces, with the predicates that decided it.
+type Intersected<N> = (Result<SurfaceIntersection<N>, EvaluationError>, Predicates);
 
 /// What is known of walls and facets before they are intersected.
 struct Joints<N: Float> {
@@ -177,7 +206,7 @@ impl<N: Float> Arrangement<N> {
         most: usize,
     ) -> Result<Pairs<'s>, EvaluationError> {
         let mut pairs = Pairs::new();
-        let mut known = HashSet::new();
+        let mut known = HashSet::default();
         let is_new = |i: &usize| {
             let Aabb { min, max } = solids.all[*i].bounds;
             // The walls of sections may end differently on the same carriers.
@@ -262,20 +291,35 @@ impl<N: Float> Arrangement<N> {
         joints.line(&pair, corners, predicates)
     }
 
-    /// The intersection of two carriers, with contacts moved to the joints of walls.
-    fn intersected(
-        &mut self,
-        pair: [usize; 2],
+    /// The intersections of pairs of carriers.
+    fn intersections(
+        &self,
+        pairs: &[([usize; 2], Vec<FacePair<'_>>)],
         sources: &[Source<'_>],
         extent: &RegionOfInterest<N>,
+        predicates: &Predicates,
+    ) -> Vec<Intersected<N>> {
+        let rule = predicates.rule();
+        concurrency::map(pairs, PAIRS_FOR_A_THREAD, |(pair, _)| {
+            let exact = pair.map(|c| move || sources[c].exact());
+            let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
+            let own = rule.predicates();
+            let found = intersect(carrier(0), carrier(1), extent, &own);
+            (found.map_err(EvaluationError::from), own)
+        })
+    }
+
+    /// The intersection of two carriers with contacts moved to the joints of walls. Its decisions are
+    /// recorded.
+    fn placed(
+        &mut self,
+        pair: [usize; 2],
+        (found, own): Intersected<N>,
         joints: &WallJoints<N>,
         predicates: &Predicates,
     ) -> Result<SurfaceIntersection<N>, EvaluationError> {
         let surfaces = pair.map(|c| &self.carriers[c]);
-        let exact = pair.map(|c| move || sources[c].exact());
-        let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
-        let own = predicates.another();
-        let mut found = intersect(carrier(0), carrier(1), extent, &own)?;
+        let mut found = found?;
         for branch in found.branches.iter_mut().filter(|branch| branch.tangent) {
             if let Some(moved) = joints.contact_at_joint(pair, branch, surfaces, predicates) {
                 *branch = moved;
@@ -300,12 +344,13 @@ impl<N: Float> Arrangement<N> {
         [a, b]: [usize; 2],
         supports: &[FacePair<'_>],
         found: &SurfaceIntersection<N>,
+        culling: &Culling<'_, N>,
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
     ) -> Vec<usize> {
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &found.branches {
-            kept.push(self.add_branch(a, b, branch, supports, predicates));
+            kept.push(self.add_branch([a, b], branch, supports, culling, predicates));
         }
         for node in &found.nodes {
             if node.on.is_empty() && !supports.iter().any(|s| s.bounds.contains(&node.point)) {
@@ -350,14 +395,25 @@ impl<N: Float> Arrangement<N> {
     /// Adds the parts of a branch near both faces, and returns their indices.
     fn add_branch(
         &mut self,
-        a: usize,
-        b: usize,
+        [a, b]: [usize; 2],
         branch: &Branch<N>,
         supports: &[FacePair<'_>],
+        culling: &Culling<'_, N>,
         predicates: &Predicates,
     ) -> Vec<usize> {
+        // Other curves may be moved to a contact, which therefore stays whole.
+        let may_cull = !branch.tangent;
         let ranges = match &branch.curve {
-            Curve::Line(line) => clipped(line, branch.range, supports, predicates),
+            Curve::Line(line) => {
+                let near = clipped(line, branch.range, supports, predicates);
+                match may_cull {
+                    true => {
+                        let open = |range| culling.open_parts(line, range, &self.tree);
+                        near.into_iter().flat_map(open).collect()
+                    }
+                    false => near,
+                }
+            }
             _ => vec![branch.range],
         };
         let mut kept = Vec::new();
@@ -370,7 +426,11 @@ impl<N: Float> Arrangement<N> {
             if regions.is_empty() {
                 continue;
             }
-            if regions.len() > MAX_REGIONS || matches!(branch.curve, Curve::Line(_)) {
+            let is_line = matches!(branch.curve, Curve::Line(_));
+            if may_cull && !is_line && culling.settles(&parts, &self.tree) {
+                continue;
+            }
+            if regions.len() > MAX_REGIONS || is_line {
                 regions = vec![b3];
             }
             kept.push(self.meetings.len());

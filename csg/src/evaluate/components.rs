@@ -6,9 +6,9 @@
 use super::result_boxes::ResultBoxes;
 use crate::tree::{NodeId, Operation, Tree, TreeNode};
 use premio_kernel::geometry::bounds::Aabb;
+use premio_kernel::hash::HashMap;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use std::collections::HashMap;
 
 /// A solid of the union: a node, or the part of a difference that one child of its minuend gives.
 #[derive(Clone, Copy, Debug)]
@@ -129,7 +129,7 @@ impl<'t> Tools<'t> {
             tree,
             boxes,
             gap,
-            indices: HashMap::new(),
+            indices: HashMap::default(),
         }
     }
 

@@ -7,9 +7,9 @@ use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::curve_surface::lies_on;
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use std::collections::HashMap;
 
 /// A piece of a curve between two corners, or a closed curve without any.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ pub(super) fn pieces<N: Float>(
     let mut all: Vec<EdgeCandidate<N>> = Vec::new();
     // Two pieces over the same points share their ends. They also share a canonical curve or, if
     // the curves coincide only within the resolution, two carriers.
-    let mut known: HashMap<Name, Vec<usize>> = HashMap::new();
+    let mut known: HashMap<Name, Vec<usize>> = HashMap::default();
     for (index, m) in arrangement.meetings.iter().enumerate() {
         for Span { range, ends } in spans(m) {
             let piece = EdgeCandidate {
@@ -104,7 +104,7 @@ pub(super) fn pieces<N: Float>(
 /// Each copy is clipped to the faces of its own pair, and records only the carriers close to these.
 fn homes<N: Float>(arrangement: &Arrangement<N>, predicates: &Predicates) -> Vec<usize> {
     let mut homes: Vec<usize> = (0..arrangement.meetings.len()).collect();
-    let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    let mut by_pair: HashMap<[usize; 2], Vec<usize>> = HashMap::default();
     for (i, m) in arrangement.meetings.iter().enumerate() {
         // A curve shorter than the resolution lies in everything close to it, and has no pieces.
         if m.carriers.len() < 3 || spans(m).is_empty() {

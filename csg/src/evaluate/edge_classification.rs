@@ -158,6 +158,9 @@ const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 /// resolution.
 const WALL_TOLERANCE: f64 = 16.0;
 
+/// The number of pieces that are worth a thread.
+const PIECES_FOR_A_THREAD: usize = 64;
+
 pub(super) fn boundary<N: Float>(
     concern: &CloseCallFilter<'_, N>,
     pieces: Vec<EdgeCandidate<N>>,
@@ -168,6 +171,15 @@ pub(super) fn boundary<N: Float>(
         membership,
         predicates,
     } = *concern;
+    let around = predicates.map(&pieces, PIECES_FOR_A_THREAD, |piece, predicates| {
+        let classifier = Classifier {
+            solids,
+            arrangement,
+            membership,
+            predicates,
+        };
+        classifier.face_uses(piece)
+    });
     let classifier = Classifier {
         solids,
         arrangement,
@@ -175,8 +187,8 @@ pub(super) fn boundary<N: Float>(
         predicates,
     };
     let mut edges: Vec<ClassifiedEdge<N>> = Vec::new();
-    for piece in pieces {
-        let face_uses = classifier.face_uses(&piece)?;
+    for (piece, face_uses) in pieces.into_iter().zip(around) {
+        let face_uses = face_uses?;
         if !face_uses.is_empty() {
             edges.push(ClassifiedEdge { piece, face_uses });
         }

@@ -6,9 +6,9 @@ use premio_kernel::brep::boundary_input::FaceUse;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use std::collections::HashMap;
 
 /// A candidate that is an edge, with the faces around it.
 #[derive(Clone)]
@@ -57,7 +57,7 @@ fn successors<N: Float>(
     arrangement: &Arrangement<N>,
     predicates: &Predicates,
 ) -> Vec<Option<usize>> {
-    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::default();
     for (i, edge) in edges.iter().enumerate() {
         for v in edge.piece.ends.iter().flatten() {
             at.entry(*v).or_default().push(i);

@@ -21,6 +21,9 @@ use premio_kernel::number::predicates::Compare;
 /// resolution.
 const STEP: f64 = 16.0;
 
+/// The number of faces that are worth a thread.
+const FACES_FOR_A_THREAD: usize = 32;
+
 /// A point of a face, with the face's surface and outward normal.
 struct FaceVerifier<'a, N: Float> {
     surface: &'a Surface<N>,
@@ -41,13 +44,26 @@ impl<N: Float> CloseCallFilter<'_, N> {
     /// A point of a face that the tree contradicts; `None` if the tree agrees with all faces for
     /// which it is conclusive.
     pub(super) fn contradiction(&self, brep: &Brep<N>) -> Option<[f64; 3]> {
-        let mut faces = brep.topology.face_ids();
-        faces.find_map(|face| {
-            let witness = self.witness(brep, face)?;
-            let [below, above] = self.material_around(&witness)?;
+        let Self {
+            solids,
+            arrangement,
+            membership,
+            predicates,
+        } = *self;
+        let faces: Vec<FaceId> = brep.topology.face_ids().collect();
+        let places = predicates.map(&faces, FACES_FOR_A_THREAD, |&face, predicates| {
+            let own = CloseCallFilter {
+                solids,
+                arrangement,
+                membership,
+                predicates,
+            };
+            let witness = own.witness(brep, face)?;
+            let [below, above] = own.material_around(&witness)?;
             let agrees = below && !above;
             (!agrees).then(|| rounded(&witness.point))
-        })
+        });
+        places.into_iter().flatten().next()
     }
 
     fn witness<'a>(&self, brep: &'a Brep<N>, face: FaceId) -> Option<FaceVerifier<'a, N>> {

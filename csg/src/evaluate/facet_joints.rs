@@ -9,7 +9,7 @@ use super::distinct_surfaces::CarrierSide;
 use super::facets::{FacetEdge, Facets};
 use super::halfspaces::{HalfSpaceModel, Solid};
 use super::region::WalledRegion;
-use super::vertices::VertexMerger;
+use super::vertices::{VertexCandidate, VertexMerger};
 use nalgebra::Point3;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::{Curve, Line};
@@ -18,9 +18,9 @@ use premio_kernel::geometry::intersect::Branch;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::{Plane, Surface};
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::{HashMap, HashSet};
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
-use std::collections::{HashMap, HashSet};
 
 /// The corners and edges of all polyhedra, by pairs of carriers in increasing order.
 pub(super) struct FacetJoints {
@@ -66,9 +66,9 @@ impl FacetJoints {
         predicates: &Predicates,
     ) -> Self {
         let mut joints = Self {
-            corners: HashMap::new(),
-            edges: HashMap::new(),
-            lines: HashSet::new(),
+            corners: HashMap::default(),
+            edges: HashMap::default(),
+            lines: HashSet::default(),
         };
         for (index, (solid, sides)) in solids.all.iter().zip(sides).enumerate() {
             if let Some(WalledRegion::Facets(facets)) = &solid.region {
@@ -192,12 +192,12 @@ impl FacetJoints {
         &self,
         m: &IntersectionCurve<N>,
         (carrier, surface): (usize, &Surface<N>),
-        corners: &VertexMerger<N>,
+        corners: &[VertexCandidate<N>],
     ) -> bool {
         if self.is_known(m) {
             let mut vertices = m.crossing.iter().flat_map(|pair| self.corners(*pair));
             let is_plane = matches!(surface, Surface::Plane(_));
-            return is_plane && vertices.any(|&v| corners.all[v].is_on(carrier));
+            return is_plane && vertices.any(|&v| corners[v].is_on(carrier));
         }
         let mut carriers = m.carriers.iter();
         carriers.any(|&a| self.lines.contains(&pair(a, carrier)))

@@ -4,11 +4,11 @@ use super::incident_walls::{IncidentWall, RegionLook};
 use crate::polyhedron::{Polyhedron, PolyhedronFace};
 use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A facet in the polyhedron's frame.
@@ -138,7 +138,7 @@ impl<N: Float> Facets<N> {
             edges.iter().map(move |&ends| FacetUse { ends, facet })
         });
         let directed: Vec<FacetUse> = directed.collect();
-        let mut opposite: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+        let mut opposite: HashMap<[usize; 2], Vec<usize>> = HashMap::default();
         for FacetUse {
             ends: [i, j],
             facet,

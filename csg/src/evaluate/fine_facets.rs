@@ -1,6 +1,6 @@
 //! Polyhedra with facets that are nearly coplanar.
 
-use std::collections::HashMap;
+use premio_kernel::hash::HashMap;
 
 use nalgebra::{Point3, Vector3};
 use premio_kernel::number::predicates::Compare;
@@ -37,7 +37,7 @@ impl<'a> RoundedFacets<'a> {
 
     fn are_within(&self, distance: f64) -> bool {
         let normals: Vec<Vector3<f64>> = self.faces.iter().map(|face| self.normal(face)).collect();
-        let mut open: HashMap<[usize; 2], usize> = HashMap::new();
+        let mut open: HashMap<[usize; 2], usize> = HashMap::default();
         for (index, face) in self.faces.iter().enumerate() {
             for edge @ [i, j] in face.edges() {
                 let Some(other) = open.remove(&[j, i]) else {

@@ -53,6 +53,19 @@ struct Choice {
     open: usize,
 }
 
+impl Choice {
+    /// The number of children that contain the point or may contain it.
+    fn present(&self) -> usize {
+        usize::from(self.first.is_some()) + self.held + self.open
+    }
+}
+
+/// Primitives that may contain a point, and nothing else does: the choices of the operations above
+/// them.
+pub(super) struct Surroundings {
+    choices: BTreeMap<NodeId, Choice>,
+}
+
 /// Whether a set certainly contains a point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Hold {
@@ -150,6 +163,57 @@ impl<'a> Membership<'a> {
         open.iter().copied().filter(decides).collect()
     }
 
+    /// The choices of the operations above the primitives that may contain a point.
+    pub fn surroundings(&self, open: &[NodeId]) -> Surroundings {
+        Surroundings {
+            choices: self.choices(&[], open),
+        }
+    }
+
+    /// Whether a point in some of the primitives may be in the solid.
+    pub fn may_contain(&self, around: &Surroundings) -> bool {
+        let Some(root) = self.tree.root() else {
+            return false;
+        };
+        match &self.tree[root] {
+            TreeNode::Leaf(_) => true,
+            TreeNode::Operation { .. } => {
+                let choice = around.choices.get(&root);
+                choice.is_some_and(|choice| self.hold(root, choice).is_some())
+            }
+        }
+    }
+
+    /// Whether the primitives around do not matter once it is known that one of them contains the
+    /// point, or that it does not.
+    pub fn settles(&self, around: &Surroundings, leaf: NodeId, inside: bool) -> bool {
+        let (mut node, mut inside) = (leaf, inside);
+        while let Some(ParentLink { parent, place }) = self.parents[node.index()] {
+            let (TreeNode::Operation { op, .. }, Some(choice)) =
+                (&self.tree[parent], around.choices.get(&parent))
+            else {
+                return false;
+            };
+            // Where the parent contains nothing whatever the leaf does, the leaf does not matter.
+            if self.hold(parent, choice).is_none() {
+                return false;
+            }
+            let is_settled = match (op, inside) {
+                (Operation::Union, true) | (Operation::Intersection, false) => true,
+                (Operation::Union, false) => choice.present() == 1,
+                (Operation::Intersection, true) => false,
+                (Operation::Difference, true) => place > 0 || choice.open == 0,
+                (Operation::Difference, false) => place == 0,
+            };
+            if !is_settled {
+                return false;
+            }
+            inside &= place == 0 || *op != Operation::Difference;
+            node = parent;
+        }
+        true
+    }
+
     /// The choices of the operations above some primitives.
     fn choices(&self, held: &[NodeId], open: &[NodeId]) -> BTreeMap<NodeId, Choice> {
         let mut done = BTreeMap::new();
@@ -183,7 +247,7 @@ impl<'a> Membership<'a> {
             return None;
         };
         let first_held = choice.first == Some(Hold::Held);
-        let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
+        let present = choice.present();
         let (possible, sure) = match op {
             Operation::Union => (present > 0, first_held || choice.held > 0),
             Operation::Intersection => {
@@ -206,10 +270,7 @@ impl<'a> Membership<'a> {
         };
         match op {
             Operation::Union => choice.first != Some(Hold::Held) && choice.held == 0,
-            Operation::Intersection => {
-                let present = usize::from(choice.first.is_some()) + choice.held + choice.open;
-                present == children.len()
-            }
+            Operation::Intersection => choice.present() == children.len(),
             Operation::Difference => choice.held == 0 && (place == 0 || choice.first.is_some()),
         }
     }
@@ -223,14 +284,7 @@ mod tests {
 
     /// The deciding primitives among the open ones of a part, by their positions in the text.
     fn deciding(part: &str, held: &[usize], open: &[usize]) -> Vec<usize> {
-        let text = format!("A = SPH(R=1)\nP = {part}\n");
-        let tree = read(
-            "part",
-            text.as_bytes(),
-            Format::Padl,
-            &ReadOptions::default(),
-        );
-        let tree = tree.unwrap().tree;
+        let tree = tree(part);
         let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
         let named = |list: &[usize]| -> Vec<NodeId> { list.iter().map(|&i| leaves[i]).collect() };
         let found = Membership::new(&tree).deciding(&named(held), &named(open));
@@ -255,23 +309,8 @@ mod tests {
 
     #[test]
     fn every_choice_of_sides_is_told() {
-        let parts = [
-            "A",
-            "A UN A INT A",
-            "A DIF (A DIF (A DIF (A UN A)))",
-            "(A UN A) DIF (A INT A) UN (A DIF A)",
-            "((A INT A) UN (A INT A)) INT ((A DIF A) UN (A DIF A))",
-            "(((((A UN A) DIF A) UN A) DIF A) INT (A UN A)) DIF A",
-        ];
-        for part in parts {
-            let text = format!("A = SPH(R=1)\nP = {part}\n");
-            let tree = read(
-                "part",
-                text.as_bytes(),
-                Format::Padl,
-                &ReadOptions::default(),
-            );
-            let tree = tree.unwrap().tree;
+        for part in PARTS {
+            let tree = tree(part);
             let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
             let membership = Membership::new(&tree);
             for choice in 0_u32..1 << leaves.len() {
@@ -288,6 +327,83 @@ mod tests {
                 );
             }
         }
+    }
+
+    const PARTS: [&str; 7] = [
+        "A",
+        "A UN A INT A",
+        "A DIF (A DIF (A DIF (A UN A)))",
+        "(A UN A) DIF (A INT A) UN (A DIF A)",
+        "((A INT A) UN (A INT A)) INT ((A DIF A) UN (A DIF A))",
+        "(((((A UN A) DIF A) UN A) DIF A) INT (A UN A)) DIF A",
+        "((A INT A) UN A) INT A",
+    ];
+
+    fn tree(part: &str) -> Tree {
+        let text = format!("A = SPH(R=1)\nP = {part}\n");
+        let options = ReadOptions::default();
+        read("part", text.as_bytes(), Format::Padl, &options)
+            .unwrap()
+            .tree
+    }
+
+    /// Every set of leaves that may contain a point, every one of them, and both answers for it.
+    #[test]
+    fn where_a_leaf_settles_the_tree_the_others_change_nothing() {
+        let mut settled = 0;
+        for part in PARTS {
+            let tree = tree(part);
+            let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+            let membership = Membership::new(&tree);
+            let chosen = |set: u32| -> Vec<NodeId> {
+                let named = leaves.iter().enumerate();
+                let of_set = named.filter(|(i, _)| set & (1 << i) != 0);
+                of_set.map(|(_, leaf)| *leaf).collect()
+            };
+            for open in 1_u32..1 << leaves.len() {
+                let around = membership.surroundings(&chosen(open));
+                let subsets = || (0..=open).filter(|set| set & !open == 0);
+                let any = subsets().any(|set| membership.contains(&chosen(set)));
+                assert_eq!(membership.may_contain(&around), any, "{part} {open:b}");
+                if !any {
+                    continue;
+                }
+                for (i, &leaf) in leaves.iter().enumerate() {
+                    for inside in [false, true] {
+                        let fixed = |set: &u32| (set & (1 << i) != 0) == inside;
+                        let is_open = open & (1 << i) != 0;
+                        if !is_open || !membership.settles(&around, leaf, inside) {
+                            continue;
+                        }
+                        settled += 1;
+                        let mut answers = subsets()
+                            .filter(fixed)
+                            .map(|set| membership.contains(&chosen(set)));
+                        let first = answers.next().unwrap();
+                        let of = format!("{part} {open:b} {i} {inside}");
+                        assert!(answers.all(|answer| answer == first), "{of}");
+                    }
+                }
+            }
+        }
+        assert!(settled > 100, "{settled}");
+    }
+
+    #[test]
+    fn a_member_of_a_union_settles_it() {
+        let tree = tree("A UN A UN (A DIF A)");
+        let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
+        let membership = Membership::new(&tree);
+        let around = membership.surroundings(&leaves);
+        let settles = |i: usize, inside| membership.settles(&around, leaves[i], inside);
+        assert_eq!(
+            [0, 1, 2, 3].map(|i| settles(i, true)),
+            [true, true, false, false]
+        );
+        assert_eq!([0, 1, 2, 3].map(|i| settles(i, false)), [false; 4]);
+        // Away from what is taken away, the minuend is a member.
+        let around = membership.surroundings(&leaves[..3]);
+        assert!(membership.settles(&around, leaves[2], true));
     }
 
     #[test]

@@ -7,7 +7,6 @@
 //! | `settings` | what the options mean for the part |
 //! | `result_boxes` | boxes around the results of the tree's nodes |
 //! | `components` | the components that are apart; each passes the stages below separately |
-//! | `concurrency` | a parallel map over them |
 //! | `escalation` | f64, and more bits where fewer are inconclusive |
 //! | `fine_facets` | finds polyhedra whose facets are closer than the noise of the coordinates |
 //! | `near_cylinders` | refuses frustums that are nearly cylinders |
@@ -21,11 +20,13 @@
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
+//! | `culling` | leaves out the parts of curves near which the tree is settled |
 //! | `facet_joints` | the corners and edges of polyhedra, which are known from the start |
 //! | `wall_joints` | moves a curve of contact to the end of the walls that meet there |
 //! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
 //! | `split_curves` | the common points of curves and carriers |
 //! | `vertices` | equal points merged |
+//! | `corner_sharing` | adds every corner to all curves through it |
 //! | `edge_candidates` | the pieces of curves between vertices |
 //! | `membership` | whether a choice of sides is material, by the tree |
 //! | `radial_order` | the order of carriers around a piece |
@@ -45,7 +46,8 @@ mod arrangement;
 mod carrier_intersections;
 mod close_calls;
 mod components;
-mod concurrency;
+mod corner_sharing;
+mod culling;
 mod distinct_surfaces;
 mod edge_candidates;
 mod edge_classification;
@@ -101,6 +103,7 @@ use premio_kernel::brep::Brep;
 use premio_kernel::brep::assemble::assemble;
 use premio_kernel::brep::check::{check, worst_gap};
 use premio_kernel::brep::face_integrals::FaceIntegrals;
+use premio_kernel::concurrency;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
@@ -205,7 +208,7 @@ fn separately(trees: &[Tree], settings: &Settings) -> Result<Vec<Evaluation>, Ev
         entity_limit: settings.entity_limit / ENTITY_SHARES,
         ..*settings
     };
-    let first = concurrency::map(trees, |tree| evaluate(tree, &share));
+    let first = concurrency::map(trees, 1, |tree| evaluate(tree, &share));
     let known = first
         .into_iter()
         .zip(trees)

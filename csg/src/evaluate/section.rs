@@ -11,9 +11,9 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use premio_kernel::geometry::curve::{self, Curve, Line};
 use premio_kernel::geometry::frame::Frame;
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::Compare;
-use std::collections::HashMap;
 
 /// The circle of an arc.
 #[derive(Clone, Copy, Debug)]
@@ -330,7 +330,7 @@ impl<N: Float> Section<N> {
     /// The curves in which consecutive walls meet.
     pub fn joints(&self) -> Vec<WallJoint<N>> {
         let key = |p: [N; 2]| p.map(N::bits);
-        let mut starts: HashMap<_, Vec<usize>> = HashMap::new();
+        let mut starts: HashMap<_, Vec<usize>> = HashMap::default();
         for edge in &self.edges {
             let side = edge.side.into_iter();
             starts.entry(key(edge.start)).or_default().extend(side);

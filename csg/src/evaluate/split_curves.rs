@@ -1,12 +1,12 @@
 //! Splits curves at their intersections with the carriers of all faces close to them, and at points
 //! known beforehand.
 
-use super::arrangement::{Arrangement, Cut, IntersectionCurve, common, is_one_pass};
+use super::arrangement::{Arrangement, Cut, IntersectionCurve, common};
 use super::close_calls::{Between, Unlisted};
 use super::error::EvaluationError;
 use super::facet_joints::{FacetJoints, NearFacet};
 use super::halfspaces::HalfSpaceModel;
-use super::vertices::{CornerIndex, VertexMerger};
+use super::vertices::{CornerIndex, VertexCandidate, VertexMerger};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::curve::Curve;
@@ -17,7 +17,6 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::roots::{NearMiss, Root, RootKind};
 use rstar::AABB;
-use std::collections::HashMap;
 
 /// A contact of such a high order that a long piece is within the resolution.
 pub(super) struct Wide<N: Float = f64> {
@@ -39,43 +38,53 @@ pub(super) struct Later<N: Float = f64> {
 }
 
 impl<N: Float> Arrangement<N> {
-    /// Splits a curve by the carriers of all faces close to it.
-    pub(super) fn cut_meeting(
-        &mut self,
+    /// The points at which the carriers of all faces close to a curve split it. Nothing is merged yet.
+    pub(super) fn splits_of(
+        &self,
         index: usize,
         solids: &HalfSpaceModel<N>,
         joints: &FacetJoints,
+        corners: &[VertexCandidate<N>],
         predicates: &Predicates,
-        corners: &mut VertexMerger<N>,
-        later: &mut Later<N>,
-    ) -> Result<(), EvaluationError> {
+    ) -> Result<CurveSplits<N>, EvaluationError> {
         let mut near = self.faces_near(index, solids, joints, predicates);
         near.sort_by_key(|face| face.carrier);
-        let known: Vec<Cut<N>> = self.meetings[index].cuts.clone();
-        let mut holding = Vec::new();
-        let mut cuts = Vec::new();
+        let m = &self.meetings[index];
+        let mut splits = CurveSplits::default();
         for faces in near.chunk_by(|a, b| a.carrier == b.carrier) {
-            let (m, carrier) = (&self.meetings[index], faces[0].carrier);
+            let carrier = faces[0].carrier;
             let surface = &self.carriers[carrier];
             let is_known = faces.iter().all(|face| face.cuts_at_edges)
                 || joints.knows_cuts(m, (carrier, surface), corners);
-            let found = match is_known {
-                true => {
-                    let resolution = predicates.resolution();
-                    (!lies_on(&m.curve, m.range, surface, resolution)).then(Vec::new)
-                }
-                false => self.cuts_by(index, faces, &known, predicates, corners, later)?,
+            let holds = match is_known {
+                true => lies_on(&m.curve, m.range, surface, predicates.resolution()),
+                false => !self.split_by(index, faces, corners, predicates, &mut splits)?,
             };
-            match found {
-                Some(found) => cuts.extend(found),
-                None => holding.push(carrier),
+            if holds {
+                splits.holding.push(carrier);
             }
         }
+        Ok(splits)
+    }
+
+    /// Splits a curve; points that coincide become one corner.
+    pub(super) fn split(
+        &mut self,
+        index: usize,
+        splits: CurveSplits<N>,
+        predicates: &Predicates,
+        corners: &mut VertexMerger<N>,
+        later: &mut Later<N>,
+    ) {
         let m = &mut self.meetings[index];
-        m.carriers.extend(holding);
+        m.cuts.extend(splits.points.iter().map(|found| Cut {
+            t: found.t,
+            vertex: corners.at(&found.point, found.through.carriers(), predicates),
+        }));
+        m.carriers.extend(splits.holding);
         m.carriers.sort_unstable();
-        m.cuts.extend(cuts);
-        Ok(())
+        later.wide.extend(splits.later.wide);
+        later.calls.extend(splits.later.calls);
     }
 
     /// The faces close to a curve where it may lie on faces of both its carriers.
@@ -119,40 +128,40 @@ impl<N: Float> Arrangement<N> {
         near
     }
 
-    /// The cuts of a curve by the faces of one carrier; `None` if the carrier contains the curve.
-    fn cuts_by(
+    /// Adds the points at which the faces of one carrier split a curve. Returns false if the carrier
+    /// contains the curve.
+    fn split_by(
         &self,
         index: usize,
         faces: &[CarrierFace],
-        known: &[Cut<N>],
+        corners: &[VertexCandidate<N>],
         predicates: &Predicates,
-        corners: &mut VertexMerger<N>,
-        later: &mut Later<N>,
-    ) -> Result<Option<Vec<Cut<N>>>, EvaluationError> {
+        splits: &mut CurveSplits<N>,
+    ) -> Result<bool, EvaluationError> {
         let carrier = faces[0].carrier;
         let m = &self.meetings[index];
-        let mut cuts = self.special_points(index, carrier, known, predicates, corners);
-        let special = cuts.iter().map(|cut| SpecialPoint {
-            t: cut.t,
-            point: corners.all[cut.vertex].point,
-        });
+        let special = self.special_points(index, carrier, corners, predicates);
+        let Some(found) = m.intersection(&self.carriers[carrier], faces, predicates)? else {
+            splits.points.extend(special);
+            return Ok(false);
+        };
         let crossed = CurveAndCarrier {
             arrangement: self,
             index,
             carrier,
-            special: special.collect(),
+            special: &special,
             predicates,
         };
-        let Some(found) = m.intersection(&self.carriers[carrier], faces, predicates)? else {
-            return Ok(None);
-        };
+        let mut crossings = Vec::new();
         for root in &found.roots {
-            cuts.extend(crossed.cut_at(root, corners, later));
+            crossings.extend(crossed.split_at(root, &mut splits.later));
         }
         for miss in &found.misses {
-            later.calls.extend(crossed.near_miss(miss));
+            splits.later.calls.extend(crossed.near_miss(miss));
         }
-        Ok(Some(cuts))
+        splits.points.extend(special);
+        splits.points.extend(crossings);
+        Ok(true)
     }
 
     /// Moves an inaccurate cut to an accurate corner, if there is one within its reach.
@@ -201,34 +210,38 @@ impl<N: Float> Arrangement<N> {
         &self,
         index: usize,
         carrier: usize,
-        known: &[Cut<N>],
+        corners: &[VertexCandidate<N>],
         predicates: &Predicates,
-        corners: &mut VertexMerger<N>,
-    ) -> Vec<Cut<N>> {
+    ) -> Vec<SplitPoint<N>> {
         let m = &self.meetings[index];
         let surface = &self.carriers[carrier];
-        let mut special: Vec<Cut<N>> = Vec::new();
-        for cut in known {
-            let p = corners.all[cut.vertex].point;
-            if predicates.within(surface.distance(&p)) {
-                let vertex = corners.at(&p, &[carrier], predicates);
-                special.push(Cut { vertex, ..*cut });
+        let on_carrier = m.cuts.iter().filter_map(|cut| {
+            let point = corners[cut.vertex].point;
+            predicates
+                .within(surface.distance(&point))
+                .then_some(SplitPoint {
+                    t: cut.t,
+                    point,
+                    through: Through::One([carrier]),
+                })
+        });
+        let apexes = surface.apexes().filter_map(|point| {
+            if !m
+                .bounds
+                .grown(predicates.resolution::<N>())
+                .contains(&point)
+            {
+                return None;
             }
-        }
-        for apex in surface.apexes() {
-            if m.bounds.grown(predicates.resolution::<N>()).contains(&apex) {
-                let t = in_range(&m.curve, m.range, m.curve.parameter(&apex));
-                let away = (m.curve.point(t) - apex).length();
-                if t.lies_in(m.range) && predicates.within(away) {
-                    let all = [m.carriers[0], m.carriers[1], carrier];
-                    special.push(Cut {
-                        t,
-                        vertex: corners.at(&apex, &all, predicates),
-                    });
-                }
-            }
-        }
-        special
+            let t = in_range(&m.curve, m.range, m.curve.parameter(&point));
+            let away = (m.curve.point(t) - point).length();
+            (t.lies_in(m.range) && predicates.within(away)).then_some(SplitPoint {
+                t,
+                point,
+                through: Through::Three([m.carriers[0], m.carriers[1], carrier]),
+            })
+        });
+        on_carrier.chain(apexes).collect()
     }
 
     /// The common point of three surfaces close to `p`, by Newton's method if their normals are
@@ -253,61 +266,6 @@ impl<N: Float> Arrangement<N> {
             false => p,
         }
     }
-
-    /// Adds to every curve the corners of its carriers, and to every corner the carriers of the
-    /// curves through it. Each cut was found from two carriers of the curve and a third one.
-    pub(super) fn share_corners(&mut self, predicates: &Predicates) {
-        let mut by_pair: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
-        for (i, m) in self.meetings.iter().enumerate() {
-            for (k, &a) in m.carriers.iter().enumerate() {
-                for &b in &m.carriers[k + 1..] {
-                    by_pair.entry((a, b)).or_default().push(i);
-                }
-            }
-        }
-        for v in 0..self.corners.len() {
-            let mut visited: Vec<usize> = Vec::new();
-            // A new carrier of a corner may add further curves.
-            loop {
-                let carriers = &self.corners[v].carriers;
-                let mut ask: Vec<usize> = Vec::new();
-                for (k, &a) in carriers.iter().enumerate() {
-                    for &b in &carriers[k + 1..] {
-                        ask.extend(by_pair.get(&(a, b)).into_iter().flatten());
-                    }
-                }
-                ask.sort_unstable();
-                ask.dedup();
-                ask.retain(|i| !visited.contains(i));
-                if !self.pass_all(&ask, v, predicates) {
-                    break;
-                }
-                visited.extend(ask);
-            }
-        }
-    }
-
-    /// Adds a corner to the curves that pass through it. Returns whether the corner got a new
-    /// carrier.
-    fn pass_all(&mut self, meetings: &[usize], v: usize, predicates: &Predicates) -> bool {
-        let corner = &mut self.corners[v];
-        let known = corner.carriers.len();
-        for &i in meetings {
-            let m = &mut self.meetings[i];
-            if m.bounds
-                .grown(predicates.resolution::<N>())
-                .contains(&corner.point)
-            {
-                m.pass(v, &corner.point, predicates);
-            }
-            if m.cuts.iter().any(|cut| cut.vertex == v) {
-                corner.carriers.extend(&m.carriers);
-            }
-        }
-        corner.carriers.sort_unstable();
-        corner.carriers.dedup();
-        corner.carriers.len() > known
-    }
 }
 
 /// The least growth of the distance from a carrier along a curve from a special point that explains
@@ -323,10 +281,47 @@ struct CarrierFace {
     cuts_at_edges: bool,
 }
 
-/// A known point of a curve on a carrier.
-struct SpecialPoint<N: Float = f64> {
+/// A point at which a curve is split, before points that coincide are merged.
+pub(super) struct SplitPoint<N: Float = f64> {
     t: N,
     point: Point3<N>,
+    through: Through,
+}
+
+/// The carriers of which a point of a curve is known to be.
+enum Through {
+    /// Another than the curve's, at a point known before.
+    One([usize; 1]),
+    /// Two of the curve and another.
+    Three([usize; 3]),
+}
+
+impl Through {
+    fn carriers(&self) -> &[usize] {
+        match self {
+            Self::One(carriers) => carriers,
+            Self::Three(carriers) => carriers,
+        }
+    }
+}
+
+/// What splits a curve.
+pub(super) struct CurveSplits<N: Float = f64> {
+    /// The points.
+    points: Vec<SplitPoint<N>>,
+    /// The further carriers that contain the curve.
+    holding: Vec<usize>,
+    later: Later<N>,
+}
+
+impl<N: Float> Default for CurveSplits<N> {
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            holding: Vec::new(),
+            later: Later::default(),
+        }
+    }
 }
 
 /// A curve that a carrier splits.
@@ -336,7 +331,7 @@ struct CurveAndCarrier<'a, N: Float = f64> {
     index: usize,
     carrier: usize,
     /// The common points that are known beforehand.
-    special: Vec<SpecialPoint<N>>,
+    special: &'a [SplitPoint<N>],
     predicates: &'a Predicates,
 }
 
@@ -349,17 +344,12 @@ impl<N: Float> CurveAndCarrier<'_, N> {
         &self.arrangement.carriers[self.carrier]
     }
 
-    /// The cut at a root. `None` at a special point, and at a contact of high order, which is
+    /// The point at a root. `None` at a special point, and at a contact of high order, which is
     /// handled later.
-    fn cut_at(
-        &self,
-        root: &Root<N>,
-        corners: &mut VertexMerger<N>,
-        later: &mut Later<N>,
-    ) -> Option<Cut<N>> {
+    fn split_at(&self, root: &Root<N>, later: &mut Later<N>) -> Option<SplitPoint<N>> {
         let m = self.curve();
         let p = m.curve.point(root.t);
-        let within = |s: &SpecialPoint<N>| m.holds_within(root.lo, root.hi, s.t);
+        let within = |s: &SplitPoint<N>| m.holds_within(root.lo, root.hi, s.t);
         if self.special.iter().any(within) || self.is_special(&p) {
             return None;
         }
@@ -382,9 +372,10 @@ impl<N: Float> CurveAndCarrier<'_, N> {
             RootKind::Simple => self.arrangement.polished(p, all, self.predicates),
             _ => p,
         };
-        Some(Cut {
+        Some(SplitPoint {
             t: root.t,
-            vertex: corners.at(&p, &all, self.predicates),
+            point: p,
+            through: Through::Three(all),
         })
     }
 
@@ -413,7 +404,7 @@ impl<N: Float> CurveAndCarrier<'_, N> {
         let p = self.curve().curve.point(miss.t);
         // Away from a special point the distance grows from zero.
         let slope = N::from_f64(SPECIAL_SLOPE);
-        let explains = |s: &SpecialPoint<N>| {
+        let explains = |s: &SplitPoint<N>| {
             let grown = (s.point - p).length() * slope;
             miss.value.abs().reaches(grown)
         };
@@ -496,34 +487,9 @@ impl<N: Float> IntersectionCurve<N> {
             .iter()
             .any(|&turn| (t + turn).lies_in([lo, hi]))
     }
-
-    /// Splits the curve at a corner that it passes through. A closed curve that was opened at the
-    /// corner is split at its ends, too, and so is a quartic that ends in an apex, where it has no
-    /// direction.
-    fn pass(&mut self, vertex: usize, p: &Point3<N>, predicates: &Predicates) {
-        let [lo, hi] = self.range;
-        let t = in_range(&self.curve, self.range, self.curve.parameter(p));
-        let runs_into = matches!(self.curve, Curve::Quartic(_)) || self.curve.period().is_some();
-        let opened = !self.closed && runs_into;
-        let ends = if opened {
-            [Some(lo), Some(hi)]
-        } else {
-            [None, None]
-        };
-        for t in ends.into_iter().flatten().chain([t]) {
-            let known = self
-                .cuts
-                .iter()
-                .any(|c| c.vertex == vertex && (!opened || is_one_pass(c.t, t)));
-            let on = t.lies_in([lo, hi]) && predicates.within((self.curve.point(t) - p).length());
-            if on && !known {
-                self.cuts.push(Cut { t, vertex });
-            }
-        }
-    }
 }
 
 /// A parameter shifted into the cycle that starts with a range.
-fn in_range<N: Float>(curve: &Curve<N>, range: [N; 2], t: N) -> N {
+pub(super) fn in_range<N: Float>(curve: &Curve<N>, range: [N; 2], t: N) -> N {
     curve.in_cycle(t, range[0])
 }

@@ -4,11 +4,11 @@ use super::close_calls::{Between, Unlisted};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::geometry::vector::{Length, rounded};
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates, Side};
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
-use std::collections::HashMap;
 
 /// A point at which a curve is split.
 #[derive(Clone, Debug)]
@@ -42,6 +42,10 @@ pub(super) struct VertexMerger<N: Float = f64> {
     cell: N,
 }
 
+/// The width of a cell of the grid, in multiples of the resolution. It is far wider than the close-call
+/// distance, so that the surroundings of few points reach into a second cell.
+const CELL: f64 = 8192.0;
+
 /// The corner closest to a point.
 #[derive(Clone, Copy)]
 struct NearestCorner<N: Float = f64> {
@@ -54,8 +58,8 @@ impl<N: Float> VertexMerger<N> {
         Self {
             all: Vec::new(),
             calls: Vec::new(),
-            grid: HashMap::new(),
-            cell: N::from_f64(256.0) * resolution,
+            grid: HashMap::default(),
+            cell: N::from_f64(CELL) * resolution,
         }
     }
 

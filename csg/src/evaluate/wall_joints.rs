@@ -12,10 +12,10 @@ use premio_kernel::geometry::curve_surface::lies_on;
 use premio_kernel::geometry::intersect::Branch;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
+use premio_kernel::hash::HashMap;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use premio_kernel::number::probes::probes;
-use std::collections::HashMap;
 
 /// The joints of all walls, by their carriers.
 pub(super) struct WallJoints<N: Float> {
@@ -25,7 +25,7 @@ pub(super) struct WallJoints<N: Float> {
 impl<N: Float> WallJoints<N> {
     /// The joints of all primitives, whose half spaces have the given carriers.
     pub fn new(solids: &HalfSpaceModel<N>, sides: &[Vec<CarrierSide>]) -> Self {
-        let mut curves: HashMap<[usize; 2], Vec<Curve<N>>> = HashMap::new();
+        let mut curves: HashMap<[usize; 2], Vec<Curve<N>>> = HashMap::default();
         for (solid, sides) in solids.all.iter().zip(sides) {
             let Some(WalledRegion::Section(section)) = &solid.region else {
                 continue;

@@ -17,11 +17,12 @@ use super::{Brep, BrepGeometry, EdgeGeometry, FaceGeometry};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::{Length, rounded};
+use crate::hash::HashMap;
 use crate::number::bisection::bisect;
 use crate::number::float::Float;
 use crate::number::predicates::{Compare, Predicates};
 use nalgebra::Point3;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// A small sphere around a vertex on which the edges there are ordered.
 struct Around {
@@ -432,8 +433,8 @@ impl<'a, N: Float> Assembler<'a, N> {
     fn add_edges(&self, brep: &mut Brep<N>) -> HashMap<usize, VertexId> {
         let raw = self.raw;
         let Brep { topology, geometry } = brep;
-        let mut vertex_of: HashMap<usize, VertexId> = HashMap::new();
-        let mut curve_of: HashMap<usize, usize> = HashMap::new();
+        let mut vertex_of: HashMap<usize, VertexId> = HashMap::default();
+        let mut curve_of: HashMap<usize, usize> = HashMap::default();
         for e in &raw.edges {
             let mut vertex = |v: usize| {
                 *vertex_of.entry(v).or_insert_with(|| {
@@ -483,7 +484,7 @@ impl<'a, N: Float> Assembler<'a, N> {
         brep: &mut Brep<N>,
     ) -> HashMap<usize, usize> {
         let Brep { topology, geometry } = brep;
-        let mut surface_of: HashMap<usize, usize> = HashMap::new();
+        let mut surface_of: HashMap<usize, usize> = HashMap::default();
         for region in faces {
             let SurfaceSide { surface, outward } = region.side;
             let surface = *surface_of.entry(surface).or_insert_with(|| {

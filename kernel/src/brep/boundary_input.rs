@@ -3,9 +3,9 @@
 use super::topology::{CoedgeId, Sense, VertexId};
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::Surface;
+use crate::hash::HashMap;
 use crate::number::float::Float;
 use nalgebra::Point3;
-use std::collections::HashMap;
 
 /// A face at an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

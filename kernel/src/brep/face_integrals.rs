@@ -18,6 +18,7 @@ mod waves;
 
 use super::Brep;
 use super::topology::{FaceId, ShellId};
+use crate::concurrency;
 use crate::geometry::bounds::Aabb;
 use crate::geometry::surface::Surface;
 use crate::geometry::vector::rounded;
@@ -84,10 +85,10 @@ impl<N: Float> FaceIntegrals<N> {
             .map(|shell| Amid::new(brep, shell.faces.iter().copied(), care))
             .collect();
         let about = |face| &shells[brep.topology.face(face).shell.index()];
-        let faces = brep.topology.face_ids();
-        let sums: Vec<_> = faces
-            .map(|face| face_sum(brep, face, about(face)))
-            .collect();
+        let faces: Vec<FaceId> = brep.topology.face_ids().collect();
+        let sums = concurrency::map(&faces, FACES_FOR_A_THREAD, |&face| {
+            face_sum(brep, face, about(face))
+        });
         Self {
             whole: Amid::new(brep, brep.topology.face_ids(), care),
             defect: sums.iter().fold(N::ZERO, |most, sum| most.max(sum.defect)),
@@ -189,6 +190,9 @@ impl<N: Float> FaceIntegrals<N> {
         brep.topology.face_ids().map(of_face).collect()
     }
 }
+
+/// The number of faces that are worth a thread.
+const FACES_FOR_A_THREAD: usize = 32;
 
 /// The ratio of rounding error to volume below which f64 is accurate enough.
 const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;

@@ -13,12 +13,12 @@ use super::shells::Fans;
 use super::topology::{EdgeId, FaceId, NonManifoldPoint};
 use crate::geometry::bounds::Aabb;
 use crate::geometry::vector::rounded;
+use crate::hash::{HashMap, HashSet};
 use crate::number::float::Float;
 use crate::number::predicates::Predicates;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use std::collections::{HashMap, HashSet};
 
 /// A point at which a boundary touches itself, with its location.
 pub(super) struct PlacedTouch<N: Float = f64> {

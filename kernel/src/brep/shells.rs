@@ -7,10 +7,10 @@ use super::face_integrals::{shell_volume, size};
 use super::point_in_solid::Closed;
 use super::topology::{CoedgeId, FaceId, Lump, LumpId, Shell, ShellId, Topology};
 use crate::geometry::vector::rounded;
+use crate::hash::HashMap;
 use crate::number::float::Float;
 use crate::number::predicates::{Compare, Predicates};
 use nalgebra::{Point3, Vector3};
-use std::collections::HashMap;
 
 /// A union-find structure.
 struct Union(Vec<usize>);
@@ -48,7 +48,7 @@ pub(super) fn fans(topology: &Topology, partner: &[CoedgeId]) -> Fans {
         let (a, b) = (topology.face_of(CoedgeId(i as u32)), topology.face_of(*p));
         faces.join(a.index(), b.index());
     }
-    let mut number: HashMap<usize, usize> = HashMap::new();
+    let mut number: HashMap<usize, usize> = HashMap::default();
     let mut shell_of = Vec::new();
     for f in 0..topology.faces.len() {
         let n = number.len();

@@ -64,7 +64,8 @@ impl Float for f64 {
     }
     #[inline]
     fn bits(self) -> [u64; 4] {
-        [self.to_bits(), 0, 0, 0]
+        // The sum with zero makes one zero of both.
+        [(self + 0.0).to_bits(), 0, 0, 0]
     }
     #[inline]
     fn index(self) -> usize {

@@ -10,11 +10,11 @@ use super::edges::{Division, Node, Polylines};
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId, Sense};
 use crate::geometry::surface::{Surface, Torus};
+use crate::hash::{HashMap, HashSet};
 use crate::number::bisection::bisect;
 use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
-use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// A chord of an edge, from the node with this index to the next.
@@ -206,13 +206,13 @@ impl<'a> Builder<'a> {
             lines,
             domain: FaceTriangulation {
                 net: ConstrainedDelaunayTriangulation::new(),
-                bounding: HashSet::new(),
-                glued: HashMap::new(),
+                bounding: HashSet::default(),
+                glued: HashMap::default(),
                 cap: Vec::new(),
                 built_of,
             },
-            corners: HashMap::new(),
-            chords: HashMap::new(),
+            corners: HashMap::default(),
+            chords: HashMap::default(),
             divisions: Vec::new(),
             crowded: false,
         }

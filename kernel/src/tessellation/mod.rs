@@ -15,12 +15,12 @@ mod refine;
 
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
+use crate::hash::HashMap;
 use charts::Chart;
 use edges::{Division, Polylines};
 use face_triangulation::FaceTriangulation;
 use nalgebra::{Point3, Vector3};
 use refine::Refiner;
-use std::collections::HashMap;
 
 /// The accuracy of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,7 +211,7 @@ impl Mesh {
 
     /// Whether every side of a triangle is a side of another in the opposite direction.
     pub fn is_watertight(&self) -> bool {
-        let mut open: HashMap<[u32; 2], i32> = HashMap::new();
+        let mut open: HashMap<[u32; 2], i32> = HashMap::default();
         for t in &self.triangles {
             for k in 0..3 {
                 let (a, b) = (t.corners[k], t.corners[(k + 1) % 3]);

@@ -9,10 +9,10 @@ use super::{Accuracy, LIMIT, Mesh, TessellationError, Triangle};
 use crate::brep::Brep;
 use crate::brep::topology::FaceId;
 use crate::geometry::surface::Surface;
+use crate::hash::HashSet;
 use nalgebra::{Point2, Point3};
 use spade::Triangulation;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
-use std::collections::HashSet;
 
 /// A mesh to which faces are added.
 pub(super) struct Refiner<'a> {
@@ -163,7 +163,7 @@ fn free_sides(domain: &FaceTriangulation, inside: &[Inner]) -> Vec<FreeSide> {
             !edge.is_constraint_edge() && !domain.glued.contains_key(&side)
         })
     });
-    let mut seen = HashSet::new();
+    let mut seen = HashSet::default();
     let once = free.filter(|edge| seen.insert(edge.as_undirected().fix()));
     let ends = once.map(|edge| edge.vertices().map(|v| *v.data()));
     ends.map(|ends| FreeSide {
@@ -262,7 +262,7 @@ fn missing(
     let finer = accuracy.part(OF_SIDES);
     let (of_sides, of_triangles) = (fit(&finer), fit(accuracy));
     let point = |c: &Corner| points[c.point as usize];
-    let mut divided: HashSet<Side> = HashSet::new();
+    let mut divided: HashSet<Side> = HashSet::default();
     let mut found = Vec::new();
     for &triangle in inside {
         let triangle = domain.net.face(triangle);

@@ -11,9 +11,10 @@ use crate::geometry::torus_grid::{Cell, Layout, Zone, grid, lines};
 use crate::geometry::torus_parameter::TorusParameter;
 use crate::geometry::tracer::Tracer;
 use crate::geometry::unresolved::Unresolved;
+use crate::hash::HashMap;
 use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// A root on a side; roots are identified by their angles.
 type RootId = usize;

@@ -1,6 +1,7 @@
 //! Classification of distances by the part's one resolution.
 
 use super::{CLOSE, CertifiedDistance, CloseCall, CoincidencePolicy, DecisionStats, Side};
+use crate::concurrency;
 use crate::number::float::Float;
 use crate::number::rational::{Rational, from_f64};
 use crate::number::rational_interval::RationalInterval;
@@ -94,6 +95,23 @@ pub struct Predicates {
     zeros: CoincidencePolicy,
     decisions: RefCell<DecisionStats>,
     doubts: RefCell<Vec<CloseCall>>,
+}
+
+/// What predicates decide by. Threads share it, and each has predicates of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DecisionRule {
+    resolution: f64,
+    zeros: CoincidencePolicy,
+}
+
+impl DecisionRule {
+    /// Predicates without a decision.
+    pub fn predicates(self) -> Predicates {
+        Predicates {
+            zeros: self.zeros,
+            ..Predicates::new(self.resolution)
+        }
+    }
 }
 
 impl Predicates {
@@ -201,10 +219,35 @@ impl Predicates {
 
     /// New predicates with the same resolution and no decisions.
     pub fn another(&self) -> Self {
-        Self {
+        self.rule().predicates()
+    }
+
+    /// What they decide by.
+    pub fn rule(&self) -> DecisionRule {
+        DecisionRule {
+            resolution: self.resolution,
             zeros: self.zeros,
-            ..Self::new(self.resolution)
         }
+    }
+
+    /// The results of `work` on every item, in order, as [`concurrency::map`]. The decisions are
+    /// counted, and their close calls listed, in the order of the items.
+    pub fn map<T: Sync, R: Send>(
+        &self,
+        items: &[T],
+        share: usize,
+        work: impl Fn(&T, &Self) -> R + Sync,
+    ) -> Vec<R> {
+        let rule = self.rule();
+        let results = concurrency::map(items, share, |item| {
+            let own = rule.predicates();
+            (work(item, &own), own)
+        });
+        let taken = results.into_iter().map(|(result, own)| {
+            self.take(own).into_iter().for_each(|call| self.list(call));
+            result
+        });
+        taken.collect()
     }
 
     /// Records a pair within the resolution that is proven not to coincide.

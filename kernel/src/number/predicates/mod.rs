@@ -16,7 +16,7 @@ mod classify;
 mod compare;
 mod distance;
 
-pub use classify::{Decision, Predicates};
+pub use classify::{Decision, DecisionRule, Predicates};
 pub use compare::Compare;
 pub use distance::CertifiedDistance;
 

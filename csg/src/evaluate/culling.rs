@@ -1,0 +1,252 @@
+//! Leaves out the parts of curves near which the tree is settled, before they are cut (Tilove 1980).
+//!
+//! Near a part of a curve some primitives certainly contain everything, and others certainly contain
+//! nothing. If the tree gives one answer whatever the remaining primitives do, there is no boundary:
+//! inside another member of a union, outside another member of an intersection, inside what is taken
+//! away.
+//!
+//! Notation: a chord is the range of a line's parameter inside a primitive.
+
+use super::arrangement::SolidTree;
+use super::halfspaces::{EndRule, HalfSpaceModel, Solid};
+use super::membership::{Membership, Surroundings};
+use nalgebra::Point3;
+use premio_kernel::geometry::bounds::{Aabb, CurvePiece};
+use premio_kernel::geometry::curve::Line;
+use premio_kernel::geometry::surface::{Cylinder, Plane, Sphere, Surface};
+use premio_kernel::geometry::vector::Length;
+use premio_kernel::number::float::Float;
+use premio_kernel::number::predicates::{Compare, Predicates};
+use rstar::AABB;
+
+/// The distance, in close-call distances, from the surface of a primitive up to which nothing is
+/// settled by it.
+const MARGIN: f64 = 4.0;
+
+/// Determines where the tree is settled.
+pub(super) struct Culling<'a, N: Float> {
+    solids: &'a HalfSpaceModel<N>,
+    membership: &'a Membership<'a>,
+    margin: N,
+}
+
+/// The chords of a primitive whose surface is displaced inwards and outwards by the margin.
+struct Chords<N: Float> {
+    /// Where the line is certainly inside.
+    inner: Option<[N; 2]>,
+    /// Outside of this the line is certainly outside.
+    outer: Option<[N; 2]>,
+}
+
+/// Where a line is on the negative side of a surface.
+enum Chord<N: Float> {
+    /// In this range only.
+    Known([N; 2]),
+    /// Nowhere.
+    Empty,
+    /// Not determined.
+    Unknown,
+}
+
+impl<'a, N: Float> Culling<'a, N> {
+    pub fn new(
+        solids: &'a HalfSpaceModel<N>,
+        membership: &'a Membership<'a>,
+        predicates: &Predicates,
+    ) -> Self {
+        let margin = N::from_f64(MARGIN) * predicates.reach::<N>();
+        Self {
+            solids,
+            membership,
+            margin,
+        }
+    }
+
+    /// The parts of a line near which the tree is not settled, in order.
+    pub fn open_parts(&self, line: &Line<N>, range: [N; 2], tree: &SolidTree) -> Vec<[N; 2]> {
+        let ends = range.map(|t| line.origin + line.direction * t);
+        let bounds = Aabb::new(&ends[0]).hull(&Aabb::new(&ends[1]));
+        let near = self.near(&bounds, tree);
+        if near.len() < 2 {
+            return vec![range];
+        }
+        let surroundings = self.surroundings(&near);
+        if !self.membership.may_contain(&surroundings) {
+            return Vec::new();
+        }
+        let mut settled: Vec<[N; 2]> = Vec::new();
+        for solid in near {
+            let settles = |inside| self.membership.settles(&surroundings, solid.leaf, inside);
+            let [inside, outside] = [true, false].map(settles);
+            if !inside && !outside {
+                continue;
+            }
+            let Chords { inner, outer } = chords(solid, line, range, self.margin);
+            if inside {
+                settled.extend(inner);
+            }
+            if outside {
+                let [lo, hi] = outer.unwrap_or([range[1], range[1]]);
+                settled.extend([[range[0], lo], [hi, range[1]]]);
+            }
+        }
+        without(range, settled)
+    }
+
+    /// Whether the tree is settled near a curve with these pieces.
+    pub fn settles(&self, pieces: &[CurvePiece<N>], tree: &SolidTree) -> bool {
+        pieces.iter().all(|piece| {
+            let near = self.near(&piece.bounds, tree);
+            if near.len() < 2 {
+                return false;
+            }
+            let surroundings = self.surroundings(&near);
+            if !self.membership.may_contain(&surroundings) {
+                return true;
+            }
+            let centre = piece.bounds.centre().map(N::from_f64);
+            let radius = N::from_f64(piece.bounds.diagonal());
+            let limit = radius + self.margin;
+            near.iter().any(|solid| {
+                let settles = |inside| self.membership.settles(&surroundings, solid.leaf, inside);
+                let [inside, outside] = [true, false].map(settles);
+                if !inside && !outside {
+                    return false;
+                }
+                let level = solid.level(&centre, N::TWO * limit);
+                match level.is_below_zero() {
+                    true => inside && level.is_short_of(-limit),
+                    false => outside && level.is_beyond(limit),
+                }
+            })
+        })
+    }
+
+    /// The primitives whose boxes intersect a box, in the order of the leaves.
+    fn near(&self, bounds: &Aabb, tree: &SolidTree) -> Vec<&'a Solid<N>> {
+        let around = bounds.grown(self.margin);
+        let around = AABB::from_corners(around.min, around.max);
+        let near = tree.locate_in_envelope_intersecting(around);
+        let mut near: Vec<&Solid<N>> = near.map(|s| &self.solids.all[s.data]).collect();
+        near.sort_unstable_by_key(|solid| solid.leaf);
+        near
+    }
+
+    fn surroundings(&self, near: &[&Solid<N>]) -> Surroundings {
+        let leaves: Vec<_> = near.iter().map(|solid| solid.leaf).collect();
+        self.membership.surroundings(&leaves)
+    }
+}
+
+/// The chords of a primitive.
+fn chords<N: Float>(solid: &Solid<N>, line: &Line<N>, range: [N; 2], margin: N) -> Chords<N> {
+    let mut outer = solid.bounds.grown(margin).along(line, range);
+    if solid.region.is_some() || solid.ends == EndRule::Any {
+        return Chords { inner: None, outer };
+    }
+    let mut inner = Some(range);
+    for (_, side) in solid.half_spaces() {
+        inner = inner.and_then(|range| match chord(&side.surface, line, range, -margin) {
+            Chord::Known(part) => Some(part),
+            Chord::Empty | Chord::Unknown => None,
+        });
+        outer = outer.and_then(|range| match chord(&side.surface, line, range, margin) {
+            Chord::Known(part) => Some(part),
+            Chord::Empty => None,
+            Chord::Unknown => Some(range),
+        });
+    }
+    Chords { inner, outer }
+}
+
+/// The part of a range in which the signed distance of a line from a surface is at most `level`.
+fn chord<N: Float>(surface: &Surface<N>, line: &Line<N>, range: [N; 2], level: N) -> Chord<N> {
+    match surface {
+        Surface::Plane(plane) => chord_of_plane(plane, line, range, level),
+        Surface::Sphere(sphere) => {
+            let Sphere { frame, radius } = sphere;
+            let from = line.origin - frame.origin;
+            let foot = -from.dot(&line.direction);
+            let away = (from + line.direction * foot).length();
+            chord_of_circle([foot, away], N::ONE, *radius + level, range)
+        }
+        Surface::Cylinder(cylinder) => chord_of_cylinder(cylinder, line, range, level),
+        _ => Chord::Unknown,
+    }
+}
+
+fn chord_of_plane<N: Float>(
+    plane: &Plane<N>,
+    line: &Line<N>,
+    [lo, hi]: [N; 2],
+    level: N,
+) -> Chord<N> {
+    let beyond = |t: N| {
+        let p: Point3<N> = line.origin + line.direction * t;
+        plane.frame.z.dot(&(p - plane.frame.origin)) - level
+    };
+    let (at_lo, at_hi) = (beyond(lo), beyond(hi));
+    let crossing = || lo + (hi - lo) * (at_lo / (at_lo - at_hi));
+    match (at_lo.is_above_zero(), at_hi.is_above_zero()) {
+        (false, false) => Chord::Known([lo, hi]),
+        (true, true) => Chord::Empty,
+        (false, true) => Chord::Known([lo, crossing()]),
+        (true, false) => Chord::Known([crossing(), hi]),
+    }
+}
+
+fn chord_of_cylinder<N: Float>(
+    cylinder: &Cylinder<N>,
+    line: &Line<N>,
+    range: [N; 2],
+    level: N,
+) -> Chord<N> {
+    let Cylinder { frame, radius } = cylinder;
+    let from = frame.coordinates(&line.origin);
+    let along = frame.components(&line.direction);
+    let (from, along) = (from.xy(), along.xy());
+    let square = along.dot(&along);
+    if square.is_short_of(N::ROUNDING.sqrt()) {
+        return Chord::Unknown;
+    }
+    let foot = -from.dot(&along) / square;
+    let off = from + along * foot;
+    let away = off.x.hypot(off.y);
+    chord_of_circle([foot, away], square, *radius + level, range)
+}
+
+/// The part of a range in which a line is within a radius. The line comes as close as `away` at the
+/// parameter `foot`, and the square of the distance from there is `square` per unit of the parameter.
+fn chord_of_circle<N: Float>(
+    [foot, away]: [N; 2],
+    square: N,
+    radius: N,
+    [lo, hi]: [N; 2],
+) -> Chord<N> {
+    if !away.is_short_of(radius) {
+        return Chord::Empty;
+    }
+    let half = ((radius - away) * (radius + away) / square).sqrt();
+    let (from, to) = (lo.max(foot - half), hi.min(foot + half));
+    match from.is_short_of(to) {
+        true => Chord::Known([from, to]),
+        false => Chord::Empty,
+    }
+}
+
+/// What is left of a range without some parts.
+fn without<N: Float>([lo, hi]: [N; 2], mut parts: Vec<[N; 2]>) -> Vec<[N; 2]> {
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut left = Vec::new();
+    let mut from = lo;
+    for [start, end] in parts {
+        if start.is_beyond(from) {
+            left.push([from, start]);
+        }
+        from = from.max(end);
+    }
+    if from.is_short_of(hi) {
+        left.push([from, hi]);
+    }
+    left
+}

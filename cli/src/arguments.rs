@@ -34,6 +34,10 @@ pub struct Arguments {
     /// (premio.message/1, one per line)
     #[arg(long, global = true, display_order = 900)]
     pub json: bool,
+    /// Use at most N threads; the output is the same for any number [default: the number of cores]
+    #[arg(long, global = true, value_name = "N", display_order = 901,
+          value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// The most that is read.
     #[command(flatten)]
     pub limits: InputLimits,

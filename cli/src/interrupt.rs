@@ -2,6 +2,7 @@
 
 use crate::diagnostics::CliError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,15 +29,16 @@ pub fn fail_where_files_are_full() {
 pub fn fail_where_files_are_full() {}
 
 /// The number of threads, by default that of the cores.
-pub fn threads(requested: Option<u16>) -> usize {
-    let all = || std::thread::available_parallelism().map_or(1, usize::from);
-    requested.map_or_else(all, usize::from)
+pub fn threads(requested: Option<u16>) -> NonZeroUsize {
+    let all = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let requested = requested.and_then(|count| NonZeroUsize::new(count.into()));
+    requested.unwrap_or_else(all)
 }
 
 /// A pool of threads.
 pub fn pool(requested: Option<u16>) -> Result<ThreadPool, CliError> {
     let pool = ThreadPoolBuilder::new()
-        .num_threads(threads(requested))
+        .num_threads(threads(requested).get())
         .build();
     pool.map_err(|e| CliError::input(format!("threads: {e}")))
 }

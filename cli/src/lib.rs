@@ -17,9 +17,10 @@ mod setup;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use diagnostics::Reporter;
+use diagnostics::{CliError, Reporter};
 use files::Files;
 use premio_csg::reader::Format;
+use premio_kernel::concurrency::with_threads;
 use premio_memory::EndingAllocator;
 use session::Session;
 use std::ffi::OsString;
@@ -40,12 +41,21 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let voice = Reporter::new(arguments.json);
     let session = Session {
         voice,
+        threads: arguments.threads,
         limits: arguments.limits,
     };
     if let Err(failure) = Files::new(&arguments.command).check() {
         return voice.fail(failure);
     }
-    let outcome = match &arguments.command {
+    let run = || command(&arguments.command, session);
+    let threads = interrupt::threads(session.threads);
+    let outcome = with_threads(threads, run);
+    outcome.map_or_else(|failure| voice.fail(failure), |()| ExitCode::SUCCESS)
+}
+
+/// Runs a command.
+fn command(command: &Command, session: Session) -> Result<(), CliError> {
+    match command {
         Command::Info(options) => commands::info::run(options, session),
         Command::Contours(options) => commands::contours::run(options, session),
         Command::Check(options) => commands::check::run(options, session),
@@ -62,8 +72,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Schema(options) => commands::schema::run(options),
         Command::Man(options) => commands::manual::man(options),
         Command::Completions(options) => commands::manual::completions(options),
-    };
-    outcome.map_or_else(|failure| voice.fail(failure), |()| ExitCode::SUCCESS)
+    }
 }
 
 /// The arguments, with `info` before a description that has no command before it.

@@ -354,3 +354,34 @@ fn descriptions_are_converted() {
         Some(2)
     );
 }
+
+/// A plate with enough holes, and balls that overlap, for several threads at every stage.
+#[test]
+fn the_bytes_are_the_same_for_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "PLATE = BLO(X=60, Y=60, Z=4)
+PART = PLATE
+  DIF FOR i=0..6: FOR j=0..6: CYL(R=2, H=6) AT (MOVX=8*i+6, MOVY=8*j+6, MOVZ=-1)
+  UN FOR i=0..9: SPH(R=3+i/10) AT (MOVX=5*i+5, MOVY=2*i+20, MOVZ=9-i/3)
+  DIF TOR(RMAJ=20, RMIN=1.5) AT (MOVX=30, MOVY=30, MOVZ=4)
+";
+    fs::write(folder.path().join("part.padl"), text).unwrap();
+    let of = |threads: u32| {
+        let run = |words: &str| {
+            let output = premio(folder.path(), &format!("{words} --threads {threads}"));
+            assert!(output.status.success(), "{output:?}");
+            output.stdout
+        };
+        [
+            "export part.padl --format json",
+            "export part.padl --format step",
+            "contours part.padl --views front,top,iso --hidden --format svg",
+        ]
+        .map(run)
+    };
+    let one = of(1);
+    assert!(one.iter().all(|bytes| bytes.len() > 10_000));
+    for threads in [2, 5] {
+        assert!(of(threads) == one, "{threads} threads");
+    }
+}

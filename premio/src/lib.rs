@@ -115,6 +115,7 @@ pub use premio_detect::{Detector, Grey};
 pub use premio_drawing::sheet::{Paper, Sheet, SheetOptions, StandardView};
 pub use premio_drawing::{Drawing, DrawingOptions};
 pub use premio_kernel::colour::Colour;
+pub use premio_kernel::concurrency::with_threads;
 pub use premio_kernel::geometry::bounds::Aabb;
 pub use premio_kernel::geometry::curve::Curve;
 pub use premio_kernel::geometry::surface::Surface;

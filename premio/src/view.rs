@@ -7,6 +7,7 @@ use crate::{Camera, Error, Result, Solid};
 use nalgebra::Point3;
 use premio_drawing::sheet::{Sheet, SheetOptions, SheetView, StandardView};
 use premio_drawing::{Drawing, DrawingOptions, dxf, svg};
+use premio_kernel::concurrency;
 use premio_kernel::geometry::curve::Curve;
 use premio_visibility::camera::projection::Projection;
 use premio_visibility::contours::{
@@ -333,16 +334,20 @@ impl Solid {
         drawing: &DrawingOptions,
         options: SheetOptions,
     ) -> Result<Sheet> {
-        let mut drawings: Vec<SheetView> = Vec::new();
+        let mut different: Vec<StandardView> = Vec::new();
         for &view in views {
-            if !drawings.iter().any(|known| known.view == Some(view)) {
-                let seen = self.view(&Camera::standard(view))?;
-                drawings.push(SheetView {
-                    view: Some(view),
-                    drawing: seen.drawing(drawing),
-                });
+            if !different.contains(&view) {
+                different.push(view);
             }
         }
+        let drawings = concurrency::map(&different, 1, |&view| {
+            let seen = self.view(&Camera::standard(view))?;
+            Ok(SheetView {
+                view: Some(view),
+                drawing: seen.drawing(drawing),
+            })
+        });
+        let drawings = drawings.into_iter().collect::<Result<_>>()?;
         Ok(Sheet::new(drawings, options)?)
     }
 }

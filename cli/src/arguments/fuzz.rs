@@ -27,9 +27,6 @@ pub struct FuzzOptions {
     /// The number of seeds of each profile
     #[arg(long, value_name = "N", default_value_t = 1000)]
     pub count: u64,
-    /// The number of trees at a time [default: the number of processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     /// Evaluate each tree again without decisions in f64, and compare
     #[arg(long)]
     pub unfiltered: bool,

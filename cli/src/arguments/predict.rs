@@ -165,9 +165,6 @@ pub struct ModelRunOptions {
     /// Continue a run that was interrupted
     #[arg(long, conflicts_with = "shard", requires = "output")]
     pub resume: bool,
-    /// The number of threads [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
 }
 
 /// One of several shards.
@@ -206,9 +203,6 @@ pub struct AdviseOptions {
     /// The number of setups that are listed below the best
     #[arg(long, value_name = "N", default_value = "10")]
     pub top: u16,
-    /// The number of threads [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
     #[command(flatten)]
     pub output: OutputOptions,
 }

@@ -8,6 +8,7 @@ use crate::{input, output};
 use premio::{Camera, Drawing, DrawingOptions, Paper, Sheet, StandardView, Unit, View};
 use premio_drawing::sheet::{self, Angle, SheetView};
 use premio_drawing::{dxf, svg};
+use premio_kernel::concurrency;
 use premio_visibility::camera::CameraError;
 use premio_visibility::contours::ViewError;
 use premio_visibility::{Contours, ViewCamera};
@@ -116,15 +117,16 @@ fn on_sheet(
         None => cameras(&requested.views),
     };
     let bar = session.voice.progress(cameras.len() as u64);
-    let mut views = Vec::new();
-    for SheetCamera { view, camera } in cameras {
-        views.push(SheetView {
-            view,
-            drawing: drawing(&seen(&part, &camera, given.as_ref())?, options),
-        });
+    let views = concurrency::map(&cameras, 1, |SheetCamera { view, camera }| {
+        let seen = seen(&part, camera, given.as_ref())?;
         bar.inc(1);
-    }
+        Ok(SheetView {
+            view: *view,
+            drawing: drawing(&seen, options),
+        })
+    });
     bar.finish_and_clear();
+    let views = views.into_iter().collect::<Result<Vec<_>, CliError>>()?;
     let title = requested.title.clone();
     let how = sheet::SheetOptions {
         title: title.unwrap_or_else(|| options.description.stem()),

@@ -63,7 +63,7 @@ pub fn run(options: &FuzzOptions, session: Session) -> Result<(), CliError> {
     };
     let stop = stop()?;
     let how = RunConfig {
-        threads: threads(options.threads),
+        threads: threads(session.threads).get(),
         stop: &stop,
         state: options.state.as_deref(),
         archive: archive.as_ref(),

@@ -3,6 +3,7 @@
 use super::shard::{Shard, ShardHead, ShardRun, ShardWriter};
 use crate::progress::{Progress, StepCounter};
 use crate::{Error, Result};
+use premio_kernel::concurrency::with_threads;
 use premio_predict::image::shading::Finishes;
 use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::model::consistency::SourceLimits;
@@ -13,6 +14,7 @@ use premio_predict::prediction::{Memory, with_draft};
 use premio_predict::prepared_part::PreparedPart;
 use premio_predict::setup::setups::Setups;
 use rayon::prelude::*;
+use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::Path;
 
@@ -88,7 +90,9 @@ impl SetupObserver<'_> {
             let each = batch.into_par_iter();
             let observed: Vec<Observation> = each
                 .map_init(Memory::default, |memory, i| {
-                    self.one(i, memory, progress, &counter)
+                    with_threads(NonZeroUsize::MIN, || {
+                        self.one(i, memory, progress, &counter)
+                    })
                 })
                 .collect();
             progress.check()?;

@@ -66,8 +66,6 @@ pub(super) fn arrange<'t, N: Float>(
         calls: Vec::new(),
         tree,
     };
-    let membership = Membership::new(source);
-    let culling = Culling::new(solids, &membership, predicates);
     let mut corners = VertexMerger::new(predicates.resolution());
     let mut joints = Joints {
         walls: WallJoints::new(solids, &found.sides),
@@ -92,19 +90,13 @@ pub(super) fn arrange<'t, N: Float>(
                 },
                 None => found.placed(*pair, intersected, &joints.walls, predicates)?,
             };
-            let kept = found.add_pair(
-                *pair,
-                supports,
-                &intersected,
-                &culling,
-                predicates,
-                &mut corners,
-            );
+            let kept = found.add_pair(*pair, supports, &intersected, predicates, &mut corners);
             found.cut_at_corners(kept, joints.facets.corners(*pair), &corners, predicates);
             bounded(found.meetings.len(), most)?;
         }
     }
     found.settle_contacts(predicates);
+    found.cull(&Culling::new(solids, &Membership::new(source), predicates));
     let mut later = Later::default();
     let mut entities = found.meetings.len();
     let curves: Vec<usize> = (0..found.meetings.len()).collect();
@@ -344,13 +336,12 @@ impl<N: Float> Arrangement<N> {
         [a, b]: [usize; 2],
         supports: &[FacePair<'_>],
         found: &SurfaceIntersection<N>,
-        culling: &Culling<'_, N>,
         predicates: &Predicates,
         corners: &mut VertexMerger<N>,
     ) -> Vec<usize> {
         let mut kept: Vec<Vec<usize>> = Vec::new();
         for branch in &found.branches {
-            kept.push(self.add_branch([a, b], branch, supports, culling, predicates));
+            kept.push(self.add_branch([a, b], branch, supports, predicates));
         }
         for node in &found.nodes {
             if node.on.is_empty() && !supports.iter().any(|s| s.bounds.contains(&node.point)) {
@@ -398,41 +389,32 @@ impl<N: Float> Arrangement<N> {
         [a, b]: [usize; 2],
         branch: &Branch<N>,
         supports: &[FacePair<'_>],
-        culling: &Culling<'_, N>,
         predicates: &Predicates,
     ) -> Vec<usize> {
-        // Other curves may be moved to a contact, which therefore stays whole.
-        let may_cull = !branch.tangent;
         let ranges = match &branch.curve {
-            Curve::Line(line) => {
-                let near = clipped(line, branch.range, supports, predicates);
-                match may_cull {
-                    true => {
-                        let open = |range| culling.open_parts(line, range, &self.tree);
-                        near.into_iter().flat_map(open).collect()
-                    }
-                    false => near,
-                }
-            }
+            Curve::Line(line) => clipped(line, branch.range, supports, predicates),
             _ => vec![branch.range],
         };
         let mut kept = Vec::new();
         for range in ranges {
             let parts = pieces(&branch.curve, range);
             let b3 = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
-            let around = b3.grown(predicates.resolution::<N>());
-            let regions = supports.iter().filter_map(|s| common(&s.bounds, &around));
-            let mut regions: Vec<Aabb> = regions.collect();
-            if regions.is_empty() {
-                continue;
-            }
-            let is_line = matches!(branch.curve, Curve::Line(_));
-            if may_cull && !is_line && culling.settles(&parts, &self.tree) {
-                continue;
-            }
-            if regions.len() > MAX_REGIONS || is_line {
-                regions = vec![b3];
-            }
+            let regions = match &branch.curve {
+                // The range is that near the faces already.
+                Curve::Line(_) => vec![b3],
+                _ => {
+                    let around = b3.grown(predicates.resolution::<N>());
+                    let regions = supports.iter().filter_map(|s| common(&s.bounds, &around));
+                    let regions: Vec<Aabb> = regions.take(MAX_REGIONS + 1).collect();
+                    if regions.is_empty() {
+                        continue;
+                    }
+                    match regions.len() > MAX_REGIONS {
+                        true => vec![b3],
+                        false => regions,
+                    }
+                }
+            };
             kept.push(self.meetings.len());
             self.meetings.push(IntersectionCurve {
                 curve: branch.curve.clone(),

@@ -7,12 +7,14 @@
 //!
 //! Notation: a chord is the range of a line's parameter inside a primitive.
 
-use super::arrangement::SolidTree;
+use super::arrangement::{Arrangement, IntersectionCurve, SolidTree};
 use super::halfspaces::{EndRule, HalfSpaceModel, Solid};
 use super::membership::{Membership, Surroundings};
+use crate::tree::NodeId;
 use nalgebra::Point3;
-use premio_kernel::geometry::bounds::{Aabb, CurvePiece};
-use premio_kernel::geometry::curve::Line;
+use premio_kernel::concurrency;
+use premio_kernel::geometry::bounds::{Aabb, CurvePiece, pieces};
+use premio_kernel::geometry::curve::{Curve, Line};
 use premio_kernel::geometry::surface::{Cylinder, Plane, Sphere, Surface};
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
@@ -62,8 +64,19 @@ impl<'a, N: Float> Culling<'a, N> {
         }
     }
 
+    /// The parts of a curve near which the tree is not settled, in order. A contact stays whole,
+    /// because it stands for other curves within its strip.
+    fn open(&self, m: &IntersectionCurve<N>, tree: &SolidTree) -> Vec<[N; 2]> {
+        match &m.curve {
+            _ if !m.tangent.is_empty() => vec![m.range],
+            Curve::Line(line) => self.open_parts(line, m.range, tree),
+            _ if self.settles(&m.parts, tree) => Vec::new(),
+            _ => vec![m.range],
+        }
+    }
+
     /// The parts of a line near which the tree is not settled, in order.
-    pub fn open_parts(&self, line: &Line<N>, range: [N; 2], tree: &SolidTree) -> Vec<[N; 2]> {
+    fn open_parts(&self, line: &Line<N>, range: [N; 2], tree: &SolidTree) -> Vec<[N; 2]> {
         let ends = range.map(|t| line.origin + line.direction * t);
         let bounds = Aabb::new(&ends[0]).hull(&Aabb::new(&ends[1]));
         let near = self.near(&bounds, tree);
@@ -94,31 +107,24 @@ impl<'a, N: Float> Culling<'a, N> {
     }
 
     /// Whether the tree is settled near a curve with these pieces.
-    pub fn settles(&self, pieces: &[CurvePiece<N>], tree: &SolidTree) -> bool {
+    fn settles(&self, pieces: &[CurvePiece<N>], tree: &SolidTree) -> bool {
         pieces.iter().all(|piece| {
             let near = self.near(&piece.bounds, tree);
-            if near.len() < 2 {
-                return false;
-            }
-            let surroundings = self.surroundings(&near);
-            if !self.membership.may_contain(&surroundings) {
-                return true;
-            }
             let centre = piece.bounds.centre().map(N::from_f64);
             let radius = N::from_f64(piece.bounds.diagonal());
             let limit = radius + self.margin;
-            near.iter().any(|solid| {
-                let settles = |inside| self.membership.settles(&surroundings, solid.leaf, inside);
-                let [inside, outside] = [true, false].map(settles);
-                if !inside && !outside {
-                    return false;
-                }
+            // The primitives whose surfaces are away, with whether the piece is inside.
+            let clear = near.iter().filter_map(|solid| {
                 let level = solid.level(&centre, N::TWO * limit);
-                match level.is_below_zero() {
-                    true => inside && level.is_short_of(-limit),
-                    false => outside && level.is_beyond(limit),
-                }
-            })
+                (!level.is_within(limit)).then_some((solid.leaf, level.is_below_zero()))
+            });
+            let clear: Vec<(NodeId, bool)> = clear.collect();
+            if clear.is_empty() {
+                return false;
+            }
+            let surroundings = self.surroundings(&near);
+            let mut clear = clear.into_iter();
+            clear.any(|(leaf, inside)| self.membership.settles(&surroundings, leaf, inside))
         })
     }
 
@@ -137,6 +143,48 @@ impl<'a, N: Float> Culling<'a, N> {
         self.membership.surroundings(&leaves)
     }
 }
+
+impl<N: Float> Arrangement<N> {
+    /// Leaves out the parts of curves near which the tree is settled.
+    pub(super) fn cull(&mut self, culling: &Culling<'_, N>) {
+        let open = concurrency::map(&self.meetings, CURVES_FOR_A_THREAD, |m| {
+            culling.open(m, &self.tree)
+        });
+        let all = std::mem::take(&mut self.meetings);
+        for (m, ranges) in all.into_iter().zip(open) {
+            match ranges[..] {
+                [range] if range == m.range => self.meetings.push(m),
+                _ => self
+                    .meetings
+                    .extend(ranges.iter().map(|&range| m.part(range))),
+            }
+        }
+    }
+}
+
+impl<N: Float> IntersectionCurve<N> {
+    /// A part of a line.
+    fn part(&self, range: [N; 2]) -> Self {
+        let parts = pieces(&self.curve, range);
+        let bounds = parts.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));
+        let cuts = self.cuts.iter().filter(|cut| cut.t.lies_in(range));
+        Self {
+            curve: self.curve.clone(),
+            range,
+            closed: false,
+            carriers: self.carriers.clone(),
+            tangent: Vec::new(),
+            crossing: self.crossing.clone(),
+            bounds,
+            regions: vec![bounds],
+            parts,
+            cuts: cuts.copied().collect(),
+        }
+    }
+}
+
+/// The number of curves that are worth a thread.
+const CURVES_FOR_A_THREAD: usize = 64;
 
 /// The chords of a primitive.
 fn chords<N: Float>(solid: &Solid<N>, line: &Line<N>, range: [N; 2], margin: N) -> Chords<N> {

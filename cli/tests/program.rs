@@ -360,10 +360,10 @@ fn descriptions_are_converted() {
 fn the_bytes_are_the_same_for_any_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     let text = "PLATE = BLO(X=60, Y=60, Z=4)
-PART = PLATE
+PART = (PLATE
   DIF FOR i=0..6: FOR j=0..6: CYL(R=2, H=6) AT (MOVX=8*i+6, MOVY=8*j+6, MOVZ=-1)
   UN FOR i=0..9: SPH(R=3+i/10) AT (MOVX=5*i+5, MOVY=2*i+20, MOVZ=9-i/3)
-  DIF TOR(RMAJ=20, RMIN=1.5) AT (MOVX=30, MOVY=30, MOVZ=4)
+  DIF TOR(RMAJ=20, RMIN=1.5) AT (MOVX=30, MOVY=30, MOVZ=4))
 ";
     fs::write(folder.path().join("part.padl"), text).unwrap();
     let of = |threads: u32| {

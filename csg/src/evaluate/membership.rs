@@ -9,6 +9,8 @@ pub(super) struct Membership<'a> {
     tree: &'a Tree,
     /// By node: the link to its parent.
     parents: Vec<Option<ParentLink>>,
+    /// By node: whether a point of it that is in nothing else is in the solid.
+    suffices: Vec<bool>,
 }
 
 /// The link from a node to its parent.
@@ -60,10 +62,13 @@ impl Choice {
     }
 }
 
-/// Primitives that may contain a point, and nothing else does: the choices of the operations above
-/// them.
+/// Primitives that contain a point or may contain it, and nothing else does.
+#[derive(Default)]
 pub(super) struct Surroundings {
+    /// The choices of the operations above them, up to the top.
     choices: BTreeMap<NodeId, Choice>,
+    /// The lowest node above all of them; `None` if the point is in the solid in no case.
+    top: Option<NodeId>,
 }
 
 /// Whether a set certainly contains a point.
@@ -87,7 +92,26 @@ impl<'a> Membership<'a> {
                 }
             }
         }
-        Self { tree, parents }
+        let mut suffices: Vec<bool> = Vec::with_capacity(parents.len());
+        for link in &parents {
+            // Parents precede their children.
+            suffices.push(link.is_none_or(|ParentLink { parent, place }| {
+                let TreeNode::Operation { op, .. } = &tree[parent] else {
+                    return false;
+                };
+                let passes = match op {
+                    Operation::Union => true,
+                    Operation::Intersection => false,
+                    Operation::Difference => place == 0,
+                };
+                passes && suffices[parent.index()]
+            }));
+        }
+        Self {
+            tree,
+            parents,
+            suffices,
+        }
     }
 
     /// Whether a point in exactly the given primitives (by leaf) is in the solid. Parents precede
@@ -148,11 +172,14 @@ impl<'a> Membership<'a> {
     /// or outside each of `open`; it is inside those in `held` and outside all others. Every
     /// primitive occurs once in the tree, so all choices are independent.
     pub fn deciding(&self, held: &[NodeId], open: &[NodeId]) -> Vec<NodeId> {
-        let choices = self.choices(held, open);
+        let around = self.around(held, open);
         let decides = |leaf: &NodeId| {
             let mut node = *leaf;
-            while let Some(ParentLink { parent, place }) = self.parents[node.index()] {
-                let choice = choices.get(&parent);
+            while Some(node) != around.top {
+                let Some(ParentLink { parent, place }) = self.parents[node.index()] else {
+                    return false;
+                };
+                let choice = around.choices.get(&parent);
                 if !choice.is_some_and(|c| self.follows(parent, place, c)) {
                     return false;
                 }
@@ -160,35 +187,30 @@ impl<'a> Membership<'a> {
             }
             true
         };
-        open.iter().copied().filter(decides).collect()
+        match self.may_contain(&around) {
+            true => open.iter().copied().filter(decides).collect(),
+            false => Vec::new(),
+        }
     }
 
     /// The choices of the operations above the primitives that may contain a point.
     pub fn surroundings(&self, open: &[NodeId]) -> Surroundings {
-        Surroundings {
-            choices: self.choices(&[], open),
-        }
+        self.around(&[], open)
     }
 
     /// Whether a point in some of the primitives may be in the solid.
     pub fn may_contain(&self, around: &Surroundings) -> bool {
-        let Some(root) = self.tree.root() else {
-            return false;
-        };
-        match &self.tree[root] {
-            TreeNode::Leaf(_) => true,
-            TreeNode::Operation { .. } => {
-                let choice = around.choices.get(&root);
-                choice.is_some_and(|choice| self.hold(root, choice).is_some())
-            }
-        }
+        around.top.is_some_and(|top| self.suffices[top.index()])
     }
 
     /// Whether the primitives around do not matter once it is known that one of them contains the
     /// point, or that it does not.
     pub fn settles(&self, around: &Surroundings, leaf: NodeId, inside: bool) -> bool {
         let (mut node, mut inside) = (leaf, inside);
-        while let Some(ParentLink { parent, place }) = self.parents[node.index()] {
+        while Some(node) != around.top {
+            let Some(ParentLink { parent, place }) = self.parents[node.index()] else {
+                return false;
+            };
             let (TreeNode::Operation { op, .. }, Some(choice)) =
                 (&self.tree[parent], around.choices.get(&parent))
             else {
@@ -214,9 +236,9 @@ impl<'a> Membership<'a> {
         true
     }
 
-    /// The choices of the operations above some primitives.
-    fn choices(&self, held: &[NodeId], open: &[NodeId]) -> BTreeMap<NodeId, Choice> {
-        let mut done = BTreeMap::new();
+    /// What is known where some primitives contain a point, and others may contain it.
+    fn around(&self, held: &[NodeId], open: &[NodeId]) -> Surroundings {
+        let mut around = Surroundings::default();
         let mut waiting: BTreeMap<NodeId, Choice> = BTreeMap::new();
         let named = |list: &[NodeId], hold| list.iter().map(move |&n| (n, hold)).collect();
         let mut found: Vec<(NodeId, Hold)> = named(held, Hold::Held);
@@ -224,6 +246,7 @@ impl<'a> Membership<'a> {
         loop {
             for (node, hold) in found.drain(..) {
                 let Some(ParentLink { parent, place }) = self.parents[node.index()] else {
+                    around.top = Some(node);
                     continue;
                 };
                 let choice = waiting.entry(parent).or_default();
@@ -234,10 +257,15 @@ impl<'a> Membership<'a> {
                 }
             }
             let Some((node, choice)) = waiting.pop_last() else {
-                return done;
+                return around;
             };
-            found.extend(self.hold(node, &choice).map(|hold| (node, hold)));
-            done.insert(node, choice);
+            let hold = self.hold(node, &choice);
+            around.choices.insert(node, choice);
+            if waiting.is_empty() {
+                around.top = hold.map(|_| node);
+                return around;
+            }
+            found.extend(hold.map(|hold| (node, hold)));
         }
     }
 

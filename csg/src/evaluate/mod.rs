@@ -20,10 +20,10 @@
 //! | `distinct_surfaces` | the distinct surfaces of these, the carriers |
 //! | `arrangement` | the curves in which carriers intersect, and the points that split them |
 //! | `carrier_intersections` | intersects the carriers, and builds the arrangement by the next three |
-//! | `culling` | leaves out the parts of curves near which the tree is settled |
 //! | `facet_joints` | the corners and edges of polyhedra, which are known from the start |
 //! | `wall_joints` | moves a curve of contact to the end of the walls that meet there |
 //! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
+//! | `culling` | leaves out the parts of curves near which the tree is settled |
 //! | `split_curves` | the common points of curves and carriers |
 //! | `vertices` | equal points merged |
 //! | `corner_sharing` | adds every corner to all curves through it |
@@ -201,7 +201,10 @@ fn separately(trees: &[Tree], settings: &Settings) -> Result<Vec<Evaluation>, Ev
         let vast = ResultBoxes::new(tree).size_below_vast();
         evaluate_component(tree, vast.is_some(), settings)
     };
-    if trees.iter().map(Tree::side_count).sum::<usize>() < MIN_SIDES_FOR_THREADS {
+    let sides = || trees.iter().map(Tree::side_count);
+    let largest = sides().max().unwrap_or(0);
+    // The work on a component that is most of the part is divided itself.
+    if sides().sum::<usize>() < MIN_SIDES_FOR_THREADS.max(2 * largest) {
         return trees.iter().map(|tree| evaluate(tree, settings)).collect();
     }
     let share = Settings {

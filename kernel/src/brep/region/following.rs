@@ -32,6 +32,19 @@ impl FollowedPath {
         self.inside.is_some_and(|inside| region.contains(&inside))
     }
 
+    /// Passes a loop; `None` if that contradicts the region in which the path is.
+    fn pass(&mut self, ring: usize, passage: CrossingSense) -> Option<()> {
+        match (self.inside, passage) {
+            (Some(from), CrossingSense::Leaving) => {
+                self.joined.push([from, ring]);
+                self.inside = None;
+            }
+            (None, CrossingSense::Entering) => self.inside = Some(ring),
+            _ => return None,
+        }
+        Some(())
+    }
+
     /// The path with its last region joined to the goal, if it ends in one.
     fn ended_in(mut self, goal: usize) -> Self {
         self.joined.extend(self.inside.map(|from| [from, goal]));
@@ -78,7 +91,7 @@ impl<N: Float> Sorter<'_, N> {
     }
 
     /// Follows a straight path to a point that is beyond the box of the starting loop and outside the
-    /// region of that loop. Joins the loops that the path crosses. Returns false if anything is
+    /// region of that loop: the first exit from a region beyond that box. Joins the loops that the path crosses. Returns false if anything is
     /// unclear, or if the path ends in the region.
     ///
     /// This joins all loops of a region. All paths have one direction. Let the reach of a loop be
@@ -105,10 +118,11 @@ impl<N: Float> Sorter<'_, N> {
         let Some(inside) = self.entered(ring, start.arc, heading) else {
             return false;
         };
-        let mut length = self.reach(ring, start, path) + N::TWO * self.start();
+        let reach = self.reach(ring, start, path) + N::TWO * self.start();
+        let mut length = N::TWO * reach;
         while length.is_short_of(path.length()) && length.is_finite() {
-            let legs = [path.upto(length)];
-            let Some(followed) = self.followed(inside, start.arc, &legs) else {
+            let Some(followed) = self.followed_beyond(reach, inside, start.arc, &path.upto(length))
+            else {
                 return false;
             };
             if !followed.is_in_region_of(ring) {
@@ -168,15 +182,30 @@ impl<N: Float> Sorter<'_, N> {
         for (k, leg) in legs.iter().enumerate() {
             path.before = path.inside;
             for c in self.crossings(leg, (k == 0).then_some(arc))? {
-                let passed = self.owner[c.arc];
-                match (path.inside, c.passage) {
-                    (Some(from), CrossingSense::Leaving) => {
-                        path.joined.push([from, passed]);
-                        path.inside = None;
-                    }
-                    (None, CrossingSense::Entering) => path.inside = Some(passed),
-                    _ => return None,
-                }
+                path.pass(self.owner[c.arc], c.passage)?;
+            }
+        }
+        Some(path)
+    }
+
+    /// Follows a path that starts in a region as far as its first exit from a region beyond `reach`,
+    /// if there is one; `None` if anything is unclear.
+    fn followed_beyond(
+        &self,
+        reach: N,
+        inside: Option<usize>,
+        arc: usize,
+        leg: &SurfacePath<N>,
+    ) -> Option<FollowedPath> {
+        let mut path = FollowedPath {
+            inside,
+            before: inside,
+            joined: Vec::new(),
+        };
+        for c in self.crossings(leg, Some(arc))? {
+            path.pass(self.owner[c.arc], c.passage)?;
+            if path.inside.is_none() && c.at.is_beyond(reach) {
+                break;
             }
         }
         Some(path)

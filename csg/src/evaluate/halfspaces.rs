@@ -592,3 +592,6 @@ fn add_frustum<N: Float>(
         add_disc(pose, height, h, t, N::ONE, add);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -79,6 +79,9 @@ pub(super) struct Section<N: Float> {
     /// The number of walls, which are the first sides of the primitive.
     pub walls: usize,
     slabs: Slabs,
+    /// The least cosine of a wall's angle from the axis of a prism; 1 for a revolution. A distance
+    /// from a wall is at least this fraction of the distance in a plane across the axis.
+    least_cosine: N,
 }
 
 /// The edges by ranges of their second coordinate.
@@ -305,6 +308,14 @@ impl<N: Float> Section<N> {
             SectionEdge::new(edge, wall)
         });
         let edges: Vec<SectionEdge<N>> = edges.collect();
+        let least_cosine = match map {
+            SectionMap::Revolution => N::ONE,
+            SectionMap::Prism { growth } => {
+                let corners = edges.iter().flat_map(SectionEdge::bounds);
+                let far = corners.flatten().fold(N::ZERO, |far, x| far.max(x.abs()));
+                N::ONE / N::ONE.hypot(growth * N::TWO * far)
+            }
+        };
         Self {
             turn,
             origin,
@@ -312,6 +323,7 @@ impl<N: Float> Section<N> {
             walls: walls.len(),
             slabs: Slabs::new(&edges),
             edges,
+            least_cosine,
         }
     }
 
@@ -381,6 +393,17 @@ impl<N: Float> Section<N> {
                     at: [q.x / scale, q.y / scale],
                     scale,
                 })
+            }
+        }
+    }
+
+    /// The height of a point beyond the apex of a prism, a lower bound of the distance from it.
+    fn beyond_apex(&self, p: &Point3<N>) -> N {
+        match self.map {
+            SectionMap::Revolution => N::ZERO,
+            SectionMap::Prism { growth } => {
+                let height = self.turn.tr_mul(&(p - self.origin)).z;
+                (height + N::ONE / growth).abs()
             }
         }
     }
@@ -478,16 +501,17 @@ impl<N: Float> Section<N> {
         look
     }
 
-    /// The signed distance of the closest wall up to a limit; beyond it, the limit with the sign.
+    /// The signed distance of the closest wall, or a lower bound of it where walls are slanted, up to
+    /// a limit; beyond it, the limit with the sign.
     pub fn level(&self, p: &Point3<N>, limit: N) -> N {
         let Some(image) = self.image(p) else {
-            return limit;
+            return limit.min(self.beyond_apex(p));
         };
-        let near = self.near(&image, limit);
+        let near = self.near(&image, limit / self.least_cosine);
         let walls = near.iter().map(|&i| &self.edges[i]);
         let walls = walls.filter(|edge| edge.side.is_some());
         let distance = walls.fold(limit, |least, edge| {
-            least.min(edge.distance(image.at) * image.scale)
+            least.min(edge.distance(image.at) * image.scale * self.least_cosine)
         });
         match self.is_inside(&image) {
             true => -distance,

@@ -50,17 +50,15 @@ pub(super) struct Seams {
     pub at: [f64; 2],
     /// The number of steps into which each angle is divided along the other's seam.
     pub steps: [u32; 2],
+    /// The length of a whole turn of each angle in the chart: the number of steps on the circle in the
+    /// middle of the tube, and on the tube.
+    pub round: [f64; 2],
 }
 
 impl Seams {
     /// The unit of angle `i` in the chart.
     pub fn steps_per_radian(&self, i: usize) -> f64 {
-        self.round(i) / TAU
-    }
-
-    /// The length of a whole turn of angle `i` in the chart.
-    pub fn round(&self, i: usize) -> f64 {
-        f64::from(self.steps[i])
+        self.round[i] / TAU
     }
 }
 
@@ -102,8 +100,13 @@ impl Chart {
                 // The steps may be nearly half as long again close to an edge, and triangles need
                 // room.
                 let fine = accuracy.part(0.25);
-                let steps = [s.major + s.minor, s.minor].map(|r| steps_round(r, &fine));
-                Self::Torus(s, Seams { at, steps })
+                let steps = |radii: [f64; 2]| radii.map(|r| steps_round(r, &fine));
+                let seams = Seams {
+                    at,
+                    steps: steps([s.major + s.minor, s.minor]),
+                    round: steps([s.major, s.minor]).map(f64::from),
+                };
+                Self::Torus(s, seams)
             }
         }
     }

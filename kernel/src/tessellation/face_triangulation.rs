@@ -469,7 +469,7 @@ impl<'a> Builder<'a> {
 
     /// Adds the corners along both seams, and identifies the sides across them.
     fn add_seams(&mut self, torus: &Torus, seams: &Seams) {
-        let lengths = [0, 1].map(|i| seams.round(i));
+        let lengths = seams.round;
         let origin = Surface::Torus(*torus).point(seams.at[0], seams.at[1]);
         let origin = self.lines.add(origin);
         for i in 0..2 {
@@ -481,7 +481,7 @@ impl<'a> Builder<'a> {
                 p[i] = beyond;
                 p
             };
-            let mut marks = self.marks_along(i, seams.steps[other]);
+            let mut marks = self.marks_along(i, lengths[other], seams.steps[other]);
             for mark in &mut marks {
                 if mark.point.is_none() {
                     let p = self.fit.chart.lift(&at(mark.along, 0.0));
@@ -518,7 +518,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The points along a seam, in order: those of edges that cross it, and steps in between.
-    fn marks_along(&self, seam: usize, steps: u32) -> Vec<SeamMark> {
+    fn marks_along(&self, seam: usize, length: f64, steps: u32) -> Vec<SeamMark> {
         let other = 1 - seam;
         let corners = self.domain.net.vertices();
         let crossing = corners.filter(|v| v.data().at[seam] == 0.0);
@@ -527,11 +527,12 @@ impl<'a> Builder<'a> {
                 along: v.data().at[other],
                 point: Some(v.data().point),
             })
-            .filter(|m| m.along > 0.0 && m.along < f64::from(steps))
+            .filter(|m| m.along > 0.0 && m.along < length)
             .collect();
+        let step = length / f64::from(steps);
         let known: Vec<f64> = marks.iter().map(|m| m.along).collect();
-        let between = (1..steps).map(f64::from);
-        let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED);
+        let between = (1..steps).map(|k| step * f64::from(k));
+        let clear = |x: &f64| known.iter().all(|y| (x - y).abs() > CROWDED * step);
         marks.extend(
             between
                 .filter(clear)
@@ -552,7 +553,7 @@ const CROWDED: f64 = 0.4;
 /// The position in a torus's chart as continued from a neighbouring one; on a seam exactly.
 fn continued_from(seams: &Seams, mut at: Point2<f64>, from: &Point2<f64>) -> Point2<f64> {
     for i in 0..2 {
-        let (length, near) = (seams.round(i), ON_SEAM * seams.steps_per_radian(i));
+        let (length, near) = (seams.round[i], ON_SEAM * seams.steps_per_radian(i));
         if at[i] < near || length - at[i] < near {
             at[i] = if from[i] > 0.5 * length { length } else { 0.0 };
         }

@@ -75,6 +75,7 @@ mod predict;
 pub mod prelude;
 mod progress;
 mod read;
+mod sheet;
 mod sketch;
 mod solid;
 mod topology;

@@ -1,8 +1,8 @@
 //! Long work: its number of threads, and its orderly end at an interrupt.
 
 use crate::diagnostics::CliError;
+use premio_kernel::concurrency::threads;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,17 +28,8 @@ pub fn fail_where_files_are_full() {
 #[cfg(not(unix))]
 pub fn fail_where_files_are_full() {}
 
-/// The number of threads, by default that of the cores.
-pub fn threads(requested: Option<u16>) -> NonZeroUsize {
-    let all = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let requested = requested.and_then(|count| NonZeroUsize::new(count.into()));
-    requested.unwrap_or_else(all)
-}
-
-/// A pool of threads.
-pub fn pool(requested: Option<u16>) -> Result<ThreadPool, CliError> {
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads(requested).get())
-        .build();
+/// A pool of the threads that the command may use.
+pub fn pool() -> Result<ThreadPool, CliError> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads()).build();
     pool.map_err(|e| CliError::input(format!("threads: {e}")))
 }

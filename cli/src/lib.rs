@@ -24,6 +24,7 @@ use premio_kernel::concurrency::with_threads;
 use premio_memory::EndingAllocator;
 use session::Session;
 use std::ffi::OsString;
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
 
 /// The allocator of the program, which prints a message when memory is exhausted.
@@ -41,20 +42,22 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let voice = Reporter::new(arguments.json);
     let session = Session {
         voice,
-        threads: arguments.threads,
         limits: arguments.limits,
     };
     if let Err(failure) = Files::new(&arguments.command).check() {
         return voice.fail(failure);
     }
-    let run = || command(&arguments.command, session);
-    let threads = interrupt::threads(session.threads);
-    let outcome = with_threads(threads, run);
+    let run = || run_command(&arguments.command, session);
+    let threads = arguments.threads.map(usize::from);
+    let outcome = match threads.and_then(NonZeroUsize::new) {
+        Some(threads) => with_threads(threads, run),
+        None => run(),
+    };
     outcome.map_or_else(|failure| voice.fail(failure), |()| ExitCode::SUCCESS)
 }
 
 /// Runs a command.
-fn command(command: &Command, session: Session) -> Result<(), CliError> {
+fn run_command(command: &Command, session: Session) -> Result<(), CliError> {
     match command {
         Command::Info(options) => commands::info::run(options, session),
         Command::Contours(options) => commands::contours::run(options, session),

@@ -7,13 +7,11 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// The reporter, the number of threads, and the limits of input.
+/// The reporter, and the limits of input.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Session {
     /// The reporter of messages.
     pub voice: Reporter,
-    /// The largest number of threads; `None` for the number of cores.
-    pub threads: Option<u16>,
     /// The limits of input.
     pub limits: InputLimits,
 }

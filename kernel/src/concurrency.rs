@@ -39,6 +39,12 @@ pub fn with_threads<R>(threads: NonZeroUsize, work: impl FnOnce() -> R) -> R {
     work()
 }
 
+/// The result of `work`, which starts no other thread: for work that runs on one of several threads
+/// already.
+pub fn on_one_thread<R>(work: impl FnOnce() -> R) -> R {
+    with_threads(NonZeroUsize::MIN, work)
+}
+
 /// The number of threads that this thread may use, with itself.
 pub fn threads() -> usize {
     static CORES: OnceLock<usize> = OnceLock::new();
@@ -46,17 +52,17 @@ pub fn threads() -> usize {
     THREADS.get().map_or_else(cores, usize::from)
 }
 
-/// The results of `work` on every item, in order. Threads are started if there are at least `share`
-/// items for each of two; the work on an item starts no others then.
+/// The results of `work` on every item, in order. Every thread has at least `grain` items; the work on
+/// an item starts no other thread where there are several.
 ///
 /// # Panics
 /// `work` panics.
-pub fn map<T: Sync, R: Send>(items: &[T], share: usize, work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let most = threads().min(items.len() / share.max(1));
+pub fn map<T: Sync, R: Send>(items: &[T], grain: usize, work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let most = threads().min(items.len() / grain.max(1));
     if most < 2 {
         return items.iter().map(work).collect();
     }
-    // Uneven work is divided well by chunks of a sixteenth of a thread's share.
+    // Sixteen chunks a thread balance uneven work.
     let chunk = (items.len() / (most * 16)).max(1);
     let next = AtomicUsize::new(0);
     let take = || {
@@ -70,7 +76,7 @@ pub fn map<T: Sync, R: Send>(items: &[T], share: usize, work: impl Fn(&T) -> R +
             results.push((from, part.iter().map(&work).collect()));
         }
     };
-    let take = || with_threads(NonZeroUsize::MIN, take);
+    let take = || on_one_thread(take);
     let mut results = thread::scope(|scope| {
         // Where no thread can be started, this one does all the work.
         let start = |_| Builder::new().spawn_scoped(scope, take).ok();

@@ -376,6 +376,9 @@ impl Expression {
 
     /// The exact boundary, with the default options.
     ///
+    /// All cores share the work. [`with_threads`](crate::with_threads) sets another number of threads;
+    /// the boundary is the same for any.
+    ///
     /// # Errors
     /// A number, a primitive or a motion is invalid, or the boundary is beyond a stated limit.
     ///

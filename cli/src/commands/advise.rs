@@ -7,7 +7,7 @@ use crate::session::Session;
 use crate::setup::setups;
 use crate::{input, output};
 use nalgebra::Vector3;
-use premio_kernel::concurrency::with_threads;
+use premio_kernel::concurrency::on_one_thread;
 use premio_predict::image_arcs::ArcSource;
 use premio_predict::prediction::Memory;
 use premio_predict::sensor_planning::{Goal, Placing, SCHEMA, Score, ScoredPlacing, SetupScorer};
@@ -15,7 +15,6 @@ use premio_predict::setup::Setup;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
-use std::num::NonZeroUsize;
 
 /// An advised setup.
 #[derive(Debug, Serialize)]
@@ -70,7 +69,7 @@ pub fn run(options: &AdviseOptions, session: Session) -> Result<(), CliError> {
             GoalName::Pose => Goal::Pose,
         },
     };
-    let pool = pool(session.threads)?;
+    let pool = pool()?;
     let keep = usize::from(options.top).max(1);
     let TriedSetups { best: scored, seen } = pool.install(|| scores(&predicates, keep, voice));
     let tried = setups.len();
@@ -125,7 +124,7 @@ fn scores(predicates: &SetupScorer<'_>, keep: usize, voice: Reporter) -> TriedSe
                 let [view, light] = predicates.setups.directions(i);
                 let view = view.unwrap_or_else(Vector3::x);
                 let placing = Placing { view, light };
-                let score = with_threads(NonZeroUsize::MIN, || predicates.score(&placing, memory));
+                let score = on_one_thread(|| predicates.score(&placing, memory));
                 bar.inc(1);
                 score.ok().map(|score| ScoredPlacing { placing, score })
             })

@@ -14,9 +14,10 @@ use crate::fuzz::run::{RunConfig, run as run_all};
 use crate::fuzz::state::{AgainstPlan, Plan, RunState, Writing};
 use crate::fuzz::summary::RunSummary;
 use crate::fuzz::worker::{Worker, serve};
-use crate::interrupt::{stop, threads};
+use crate::interrupt::stop;
 use crate::output;
 use crate::session::Session;
+use premio_kernel::concurrency::threads;
 use premio_verify::against::import::{ImportError, model};
 use premio_verify::against::template::{ModelTemplate, TemplateLanguage};
 use premio_verify::generator::profile::Profile;
@@ -63,7 +64,7 @@ pub fn run(options: &FuzzOptions, session: Session) -> Result<(), CliError> {
     };
     let stop = stop()?;
     let how = RunConfig {
-        threads: threads(session.threads).get(),
+        threads: threads(),
         stop: &stop,
         state: options.state.as_deref(),
         archive: archive.as_ref(),

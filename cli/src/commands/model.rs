@@ -52,7 +52,7 @@ fn predicted(options: &ModelRunOptions, session: Session) -> Result<(), CliError
     };
     let (subject, finishes) = file.subject(&part, &run.setups.conditions)?;
     file.check_places(&subject, session)?;
-    let pool = pool(session.threads)?;
+    let pool = pool()?;
     let stop = stop()?;
     let bar = voice.progress(run.setups.len() as u64);
     let token = CancelToken::from(stop);

@@ -5,12 +5,11 @@
 //! which alone counts, so that a failure is caused by the tree and not by earlier ones.
 
 use super::examine::{Examine, Examined, ModelOrigin};
-use premio_kernel::concurrency::with_threads;
+use premio_kernel::concurrency::on_one_thread;
 use premio_verify::generator::model::PartModel;
 use premio_verify::trial::{FailureKind, TrialConfig, TrialOutcome, guarded};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
-use std::num::NonZeroUsize;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -211,7 +210,7 @@ pub fn serve(terms: &TrialConfig, limit: Duration) -> io::Result<()> {
     for line in io::stdin().lock().lines() {
         let model: PartModel = serde_json::from_str(&line?)?;
         set(Some(Instant::now()));
-        let outcome = with_threads(NonZeroUsize::MIN, || guarded(&model, terms));
+        let outcome = on_one_thread(|| guarded(&model, terms));
         set(None);
         serde_json::to_writer(&mut output, &outcome)?;
         output.write_all(b"\n")?;

@@ -158,8 +158,8 @@ const LOOKS: [f64; 6] = [0.5, 0.381_966, 0.618_034, 0.2, 0.85, 0.07];
 /// resolution.
 const WALL_TOLERANCE: f64 = 16.0;
 
-/// The number of pieces that are worth a thread.
-const PIECES_FOR_A_THREAD: usize = 64;
+/// The least number of pieces for a thread.
+const PIECE_GRAIN: usize = 64;
 
 pub(super) fn boundary<N: Float>(
     concern: &CloseCallFilter<'_, N>,
@@ -171,7 +171,7 @@ pub(super) fn boundary<N: Float>(
         membership,
         predicates,
     } = *concern;
-    let around = predicates.map(&pieces, PIECES_FOR_A_THREAD, |piece, predicates| {
+    let around = predicates.map(&pieces, PIECE_GRAIN, |piece, predicates| {
         let classifier = Classifier {
             solids,
             arrangement,

@@ -21,8 +21,8 @@ use premio_kernel::number::predicates::Compare;
 /// resolution.
 const STEP: f64 = 16.0;
 
-/// The number of faces that are worth a thread.
-const FACES_FOR_A_THREAD: usize = 32;
+/// The least number of faces for a thread.
+const FACE_GRAIN: usize = 32;
 
 /// A point of a face, with the face's surface and outward normal.
 struct FaceVerifier<'a, N: Float> {
@@ -51,7 +51,7 @@ impl<N: Float> CloseCallFilter<'_, N> {
             predicates,
         } = *self;
         let faces: Vec<FaceId> = brep.topology.face_ids().collect();
-        let places = predicates.map(&faces, FACES_FOR_A_THREAD, |&face, predicates| {
+        let places = predicates.map(&faces, FACE_GRAIN, |&face, predicates| {
             let own = CloseCallFilter {
                 solids,
                 arrangement,

@@ -86,7 +86,7 @@ impl<N: Float> FaceIntegrals<N> {
             .collect();
         let about = |face| &shells[brep.topology.face(face).shell.index()];
         let faces: Vec<FaceId> = brep.topology.face_ids().collect();
-        let sums = concurrency::map(&faces, FACES_FOR_A_THREAD, |&face| {
+        let sums = concurrency::map(&faces, FACE_GRAIN, |&face| {
             face_sum(brep, face, about(face))
         });
         Self {
@@ -191,8 +191,8 @@ impl<N: Float> FaceIntegrals<N> {
     }
 }
 
-/// The number of faces that are worth a thread.
-const FACES_FOR_A_THREAD: usize = 32;
+/// The least number of faces for a thread.
+const FACE_GRAIN: usize = 32;
 
 /// The ratio of rounding error to volume below which f64 is accurate enough.
 const SLENDER: f64 = 1.0 / (1_u64 << 20) as f64;

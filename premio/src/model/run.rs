@@ -3,7 +3,7 @@
 use super::shard::{Shard, ShardHead, ShardRun, ShardWriter};
 use crate::progress::{Progress, StepCounter};
 use crate::{Error, Result};
-use premio_kernel::concurrency::with_threads;
+use premio_kernel::concurrency::on_one_thread;
 use premio_predict::image::shading::Finishes;
 use premio_predict::image_arcs::lit_scene::StageError;
 use premio_predict::model::consistency::SourceLimits;
@@ -14,7 +14,6 @@ use premio_predict::prediction::{Memory, with_draft};
 use premio_predict::prepared_part::PreparedPart;
 use premio_predict::setup::setups::Setups;
 use rayon::prelude::*;
-use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::Path;
 
@@ -90,9 +89,7 @@ impl SetupObserver<'_> {
             let each = batch.into_par_iter();
             let observed: Vec<Observation> = each
                 .map_init(Memory::default, |memory, i| {
-                    with_threads(NonZeroUsize::MIN, || {
-                        self.one(i, memory, progress, &counter)
-                    })
+                    on_one_thread(|| self.one(i, memory, progress, &counter))
                 })
                 .collect();
             progress.check()?;

@@ -97,7 +97,8 @@ pub struct Predicates {
     doubts: RefCell<Vec<CloseCall>>,
 }
 
-/// What predicates decide by. Threads share it, and each has predicates of its own.
+/// What predicates decide by: the resolution and the coincidence policy. Unlike predicates it can be
+/// shared by threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DecisionRule {
     resolution: f64,
@@ -230,16 +231,17 @@ impl Predicates {
         }
     }
 
-    /// The results of `work` on every item, in order, as [`concurrency::map`]. The decisions are
-    /// counted, and their close calls listed, in the order of the items.
+    /// The results of `work` on every item, in order, as of [`concurrency::map`]. Each item has
+    /// predicates of its own. The counts are added, and the close calls listed, in the order of the
+    /// items.
     pub fn map<T: Sync, R: Send>(
         &self,
         items: &[T],
-        share: usize,
+        grain: usize,
         work: impl Fn(&T, &Self) -> R + Sync,
     ) -> Vec<R> {
         let rule = self.rule();
-        let results = concurrency::map(items, share, |item| {
+        let results = concurrency::map(items, grain, |item| {
             let own = rule.predicates();
             (work(item, &own), own)
         });

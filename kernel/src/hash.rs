@@ -1,5 +1,5 @@
-//! Hash maps and sets for indices and coordinates. Their hash function takes a fifth of the time of the
-//! standard one, and each map has a seed of its own, so that no input can be made to collide.
+//! Hash maps and sets for indices and coordinates. Their hash function is faster than the standard one.
+//! Every map has a random seed, which makes collisions hard to provoke.
 
 use foldhash::fast::RandomState;
 

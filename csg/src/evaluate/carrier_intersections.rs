@@ -53,63 +53,32 @@ pub(super) fn arrange<'t, N: Float>(
         sources,
         sides,
     } = merge(tree, solids, extent, predicates);
-    // Faces that nearly intersect are included: a close call is listed on either side of the
-    // resolution.
-    let reach = predicates.reach();
-    let source = tree;
-    let tree = tree_of(solids, 0..solids.all.len(), reach);
     let mut found = Arrangement {
         carriers,
         sides,
         meetings: Vec::new(),
         corners: Vec::new(),
         calls: Vec::new(),
-        tree,
+        // Faces that nearly intersect are included: a close call is listed on either side of the
+        // resolution.
+        tree: tree_of(solids, 0..solids.all.len(), predicates.reach()),
     };
     let mut corners = VertexMerger::new(predicates.resolution());
     let mut joints = Joints {
         walls: WallJoints::new(solids, &found.sides),
         facets: FacetJoints::new(solids, &found.sides, &mut corners, predicates),
     };
-    let pairs: Vec<_> = found.pairs(solids, reach, most)?.into_iter().collect();
-    for pairs in pairs.chunks(BATCH) {
-        let intersections = found.intersections(pairs, &sources, extent, predicates);
-        for ((pair, supports), intersected) in pairs.iter().zip(intersections) {
-            let line = found.known_line(
-                *pair,
-                supports,
-                extent,
-                &mut joints.facets,
-                &corners,
-                predicates,
-            );
-            let intersected = match line {
-                Some(line) => SurfaceIntersection {
-                    branches: vec![line],
-                    ..SurfaceIntersection::default()
-                },
-                None => found.placed(*pair, intersected, &joints.walls, predicates)?,
-            };
-            let kept = found.add_pair(*pair, supports, &intersected, predicates, &mut corners);
-            found.cut_at_corners(kept, joints.facets.corners(*pair), &corners, predicates);
-            bounded(found.meetings.len(), most)?;
-        }
-    }
+    let context = Context {
+        solids,
+        sources: &sources,
+        extent,
+        predicates,
+        most,
+    };
+    found.add_curves(&context, &mut joints, &mut corners)?;
     found.settle_contacts(predicates);
-    found.cull(&Culling::new(solids, &Membership::new(source), predicates));
-    let mut later = Later::default();
-    let mut entities = found.meetings.len();
-    let curves: Vec<usize> = (0..found.meetings.len()).collect();
-    for curves in curves.chunks(BATCH) {
-        let splits = predicates.map(curves, CURVES_FOR_A_THREAD, |&i, predicates| {
-            found.splits_of(i, solids, &joints.facets, &corners.all, predicates)
-        });
-        for (&i, splits) in curves.iter().zip(splits) {
-            found.split(i, splits?, predicates, &mut corners, &mut later);
-            entities += found.meetings[i].cuts.len();
-            bounded(entities, most)?;
-        }
-    }
+    found.cull(&Culling::new(solids, &Membership::new(tree), predicates));
+    let mut later = found.split_curves(&context, &joints.facets, &mut corners)?;
     found.calls.append(&mut later.calls);
     // The most accurate come first; the others are moved to them.
     later.wide.sort_by(|a, b| a.reach.total_cmp(&b.reach));
@@ -119,7 +88,7 @@ pub(super) fn arrange<'t, N: Float>(
     }
     found.calls.append(&mut corners.calls);
     found.corners = corners.all;
-    found.share_corners(predicates);
+    found.complete_incidence(predicates);
     for m in &mut found.meetings {
         m.order_cuts();
     }
@@ -129,14 +98,24 @@ pub(super) fn arrange<'t, N: Float>(
     })
 }
 
+/// What the stages of the construction share.
+struct Context<'a, 't, N: Float> {
+    solids: &'a HalfSpaceModel<N>,
+    sources: &'a [Source<'t>],
+    extent: &'a RegionOfInterest<N>,
+    predicates: &'a Predicates,
+    /// The largest number of curves and cuts.
+    most: usize,
+}
+
 /// The number of pairs of surfaces, or of curves, that are intersected before the results are merged.
 const BATCH: usize = 4096;
 
-/// The number of pairs of surfaces that are worth a thread.
-const PAIRS_FOR_A_THREAD: usize = 32;
+/// The least number of pairs of surfaces for a thread.
+const PAIR_GRAIN: usize = 32;
 
-/// The number of curves that are worth a thread.
-const CURVES_FOR_A_THREAD: usize = 32;
+/// The least number of curves for a thread.
+const CURVE_GRAIN: usize = 32;
 
 /// An intersection of two surfaces, with the predicates that decided it.
 type Intersected<N> = (Result<SurfaceIntersection<N>, EvaluationError>, Predicates);
@@ -189,6 +168,71 @@ impl FacePair<'_> {
 type Pairs<'s> = BTreeMap<[usize; 2], Vec<FacePair<'s>>>;
 
 impl<N: Float> Arrangement<N> {
+    /// Adds the curves in which carriers intersect near their faces.
+    fn add_curves(
+        &mut self,
+        context: &Context<'_, '_, N>,
+        joints: &mut Joints<N>,
+        corners: &mut VertexMerger<N>,
+    ) -> Result<(), EvaluationError> {
+        let Context {
+            solids,
+            sources,
+            extent,
+            predicates,
+            most,
+        } = *context;
+        let pairs = self.pairs(solids, predicates.reach(), most)?;
+        let pairs: Vec<_> = pairs.into_iter().collect();
+        for pairs in pairs.chunks(BATCH) {
+            let intersections = self.intersections(pairs, sources, extent, predicates);
+            for ((pair, supports), intersected) in pairs.iter().zip(intersections) {
+                let facets = &mut joints.facets;
+                let line = self.known_line(*pair, supports, extent, facets, corners, predicates);
+                let intersected = match line {
+                    Some(line) => SurfaceIntersection {
+                        branches: vec![line],
+                        ..SurfaceIntersection::default()
+                    },
+                    None => self.placed(*pair, intersected, &joints.walls, predicates)?,
+                };
+                let kept = self.add_pair(*pair, supports, &intersected, predicates, corners);
+                self.cut_at_corners(kept, joints.facets.corners(*pair), corners, predicates);
+                bounded(self.meetings.len(), most)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Splits all curves at the carriers of the faces near them. Returns what is handled after that.
+    fn split_curves(
+        &mut self,
+        context: &Context<'_, '_, N>,
+        facets: &FacetJoints,
+        corners: &mut VertexMerger<N>,
+    ) -> Result<Later<N>, EvaluationError> {
+        let Context {
+            solids,
+            predicates,
+            most,
+            ..
+        } = *context;
+        let mut later = Later::default();
+        let mut entities = self.meetings.len();
+        let curves: Vec<usize> = (0..self.meetings.len()).collect();
+        for curves in curves.chunks(BATCH) {
+            let splits = predicates.map(curves, CURVE_GRAIN, |&i, predicates| {
+                self.splits_of(i, solids, facets, &corners.all, predicates)
+            });
+            for (&i, splits) in curves.iter().zip(splits) {
+                self.split(i, splits?, predicates, corners, &mut later);
+                entities += self.meetings[i].cuts.len();
+                bounded(entities, most)?;
+            }
+        }
+        Ok(later)
+    }
+
     /// The pairs of carriers whose faces may intersect, with these faces. Of several equal solids
     /// one is used.
     fn pairs<'s>(
@@ -292,7 +336,7 @@ impl<N: Float> Arrangement<N> {
         predicates: &Predicates,
     ) -> Vec<Intersected<N>> {
         let rule = predicates.rule();
-        concurrency::map(pairs, PAIRS_FOR_A_THREAD, |(pair, _)| {
+        concurrency::map(pairs, PAIR_GRAIN, |(pair, _)| {
             let exact = pair.map(|c| move || sources[c].exact());
             let carrier = |i: usize| Carrier::rounded(&self.carriers[pair[i]], &exact[i]);
             let own = rule.predicates();

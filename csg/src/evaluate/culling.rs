@@ -1,15 +1,15 @@
-//! Leaves out the parts of curves near which the tree is settled, before they are cut (Tilove 1980).
+//! Leaves out the parts of curves near which membership is constant, before they are cut (Tilove 1980).
 //!
-//! Near a part of a curve some primitives certainly contain everything, and others certainly contain
-//! nothing. If the tree gives one answer whatever the remaining primitives do, there is no boundary:
-//! inside another member of a union, outside another member of an intersection, inside what is taken
-//! away.
+//! Near a part of a curve some primitives certainly contain every point, and others certainly contain
+//! none. Membership in the solid is constant there if it is the same for all choices of the remaining
+//! primitives: inside another member of a union, outside another member of an intersection, inside
+//! what is taken away. Then the boundary is not there.
 //!
 //! Notation: a chord is the range of a line's parameter inside a primitive.
 
 use super::arrangement::{Arrangement, IntersectionCurve, SolidTree};
 use super::halfspaces::{EndRule, HalfSpaceModel, Solid};
-use super::membership::{Membership, Surroundings};
+use super::membership::{Containment, Membership, Surroundings};
 use crate::tree::NodeId;
 use nalgebra::Point3;
 use premio_kernel::concurrency;
@@ -21,11 +21,11 @@ use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{Compare, Predicates};
 use rstar::AABB;
 
-/// The distance, in close-call distances, from the surface of a primitive up to which nothing is
-/// settled by it.
+/// The distance from the surface of a primitive, in close-call distances, within which a point may be
+/// inside or outside.
 const MARGIN: f64 = 4.0;
 
-/// Determines where the tree is settled.
+/// Determines where membership is constant.
 pub(super) struct Culling<'a, N: Float> {
     solids: &'a HalfSpaceModel<N>,
     membership: &'a Membership<'a>,
@@ -64,19 +64,23 @@ impl<'a, N: Float> Culling<'a, N> {
         }
     }
 
-    /// The parts of a curve near which the tree is not settled, in order. A contact stays whole,
-    /// because it stands for other curves within its strip.
-    fn open(&self, m: &IntersectionCurve<N>, tree: &SolidTree) -> Vec<[N; 2]> {
+    /// The parts of a curve near which membership is not known to be constant, in order. A contact
+    /// stays whole, because it stands for other curves within its strip.
+    fn varying_parts(&self, m: &IntersectionCurve<N>, tree: &SolidTree) -> Vec<[N; 2]> {
         match &m.curve {
             _ if !m.tangent.is_empty() => vec![m.range],
-            Curve::Line(line) => self.open_parts(line, m.range, tree),
-            _ if self.settles(&m.parts, tree) => Vec::new(),
+            Curve::Line(line) => self.varying_parts_of_line(line, m.range, tree),
+            _ if self.is_constant(&m.parts, tree) => Vec::new(),
             _ => vec![m.range],
         }
     }
 
-    /// The parts of a line near which the tree is not settled, in order.
-    fn open_parts(&self, line: &Line<N>, range: [N; 2], tree: &SolidTree) -> Vec<[N; 2]> {
+    fn varying_parts_of_line(
+        &self,
+        line: &Line<N>,
+        range: [N; 2],
+        tree: &SolidTree,
+    ) -> Vec<[N; 2]> {
         let ends = range.map(|t| line.origin + line.direction * t);
         let bounds = Aabb::new(&ends[0]).hull(&Aabb::new(&ends[1]));
         let near = self.near(&bounds, tree);
@@ -87,44 +91,50 @@ impl<'a, N: Float> Culling<'a, N> {
         if !self.membership.may_contain(&surroundings) {
             return Vec::new();
         }
-        let mut settled: Vec<[N; 2]> = Vec::new();
+        let mut constant: Vec<[N; 2]> = Vec::new();
         for solid in near {
-            let settles = |inside| self.membership.settles(&surroundings, solid.leaf, inside);
-            let [inside, outside] = [true, false].map(settles);
+            let is_constant = |side| {
+                let membership = self.membership;
+                membership.is_constant(&surroundings, solid.leaf, side)
+            };
+            let [inside, outside] = [Containment::Inside, Containment::Outside].map(is_constant);
             if !inside && !outside {
                 continue;
             }
             let Chords { inner, outer } = chords(solid, line, range, self.margin);
             if inside {
-                settled.extend(inner);
+                constant.extend(inner);
             }
             if outside {
                 let [lo, hi] = outer.unwrap_or([range[1], range[1]]);
-                settled.extend([[range[0], lo], [hi, range[1]]]);
+                constant.extend([[range[0], lo], [hi, range[1]]]);
             }
         }
-        without(range, settled)
+        without(range, constant)
     }
 
-    /// Whether the tree is settled near a curve with these pieces.
-    fn settles(&self, pieces: &[CurvePiece<N>], tree: &SolidTree) -> bool {
+    /// Whether membership is constant near a curve with these pieces.
+    fn is_constant(&self, pieces: &[CurvePiece<N>], tree: &SolidTree) -> bool {
         pieces.iter().all(|piece| {
             let near = self.near(&piece.bounds, tree);
             let centre = piece.bounds.centre().map(N::from_f64);
             let radius = N::from_f64(piece.bounds.diagonal());
             let limit = radius + self.margin;
-            // The primitives whose surfaces are away, with whether the piece is inside.
-            let clear = near.iter().filter_map(|solid| {
+            let side = |solid: &&Solid<N>| {
                 let level = solid.level(&centre, N::TWO * limit);
-                (!level.is_within(limit)).then_some((solid.leaf, level.is_below_zero()))
-            });
-            let clear: Vec<(NodeId, bool)> = clear.collect();
+                let side = match level.is_below_zero() {
+                    true => Containment::Inside,
+                    false => Containment::Outside,
+                };
+                (!level.is_within(limit)).then_some((solid.leaf, side))
+            };
+            let clear: Vec<(NodeId, Containment)> = near.iter().filter_map(side).collect();
             if clear.is_empty() {
                 return false;
             }
             let surroundings = self.surroundings(&near);
             let mut clear = clear.into_iter();
-            clear.any(|(leaf, inside)| self.membership.settles(&surroundings, leaf, inside))
+            clear.any(|(leaf, side)| self.membership.is_constant(&surroundings, leaf, side))
         })
     }
 
@@ -145,13 +155,13 @@ impl<'a, N: Float> Culling<'a, N> {
 }
 
 impl<N: Float> Arrangement<N> {
-    /// Leaves out the parts of curves near which the tree is settled.
+    /// Leaves out the parts of curves near which membership is constant.
     pub(super) fn cull(&mut self, culling: &Culling<'_, N>) {
-        let open = concurrency::map(&self.meetings, CURVES_FOR_A_THREAD, |m| {
-            culling.open(m, &self.tree)
+        let kept = concurrency::map(&self.meetings, CURVE_GRAIN, |m| {
+            culling.varying_parts(m, &self.tree)
         });
         let all = std::mem::take(&mut self.meetings);
-        for (m, ranges) in all.into_iter().zip(open) {
+        for (m, ranges) in all.into_iter().zip(kept) {
             match ranges[..] {
                 [range] if range == m.range => self.meetings.push(m),
                 _ => self
@@ -183,8 +193,8 @@ impl<N: Float> IntersectionCurve<N> {
     }
 }
 
-/// The number of curves that are worth a thread.
-const CURVES_FOR_A_THREAD: usize = 64;
+/// The least number of curves for a thread.
+const CURVE_GRAIN: usize = 64;
 
 /// The chords of a primitive.
 fn chords<N: Float>(solid: &Solid<N>, line: &Line<N>, range: [N; 2], margin: N) -> Chords<N> {

@@ -9,7 +9,7 @@ pub(super) struct Membership<'a> {
     tree: &'a Tree,
     /// By node: the link to its parent.
     parents: Vec<Option<ParentLink>>,
-    /// By node: whether a point of it that is in nothing else is in the solid.
+    /// By node: whether a point that is in it and in no node apart from it is in the solid.
     suffices: Vec<bool>,
 }
 
@@ -62,13 +62,21 @@ impl Choice {
     }
 }
 
-/// Primitives that contain a point or may contain it, and nothing else does.
+/// What is known of a point from the primitives that contain it and those that may contain it. No other
+/// primitive contains it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// The choices of the operations above them, up to the top.
+    /// The choices of the operations above these primitives, up to the top.
     choices: BTreeMap<NodeId, Choice>,
-    /// The lowest node above all of them; `None` if the point is in the solid in no case.
+    /// The lowest node above all of them; `None` if none contains the point in any case.
     top: Option<NodeId>,
+}
+
+/// Where a point certainly is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Containment {
+    Inside,
+    Outside,
 }
 
 /// Whether a set certainly contains a point.
@@ -193,20 +201,20 @@ impl<'a> Membership<'a> {
         }
     }
 
-    /// The choices of the operations above the primitives that may contain a point.
+    /// What is known of a point that only the primitives `open` may contain.
     pub fn surroundings(&self, open: &[NodeId]) -> Surroundings {
         self.around(&[], open)
     }
 
-    /// Whether a point in some of the primitives may be in the solid.
+    /// Whether the point may be in the solid.
     pub fn may_contain(&self, around: &Surroundings) -> bool {
         around.top.is_some_and(|top| self.suffices[top.index()])
     }
 
-    /// Whether the primitives around do not matter once it is known that one of them contains the
-    /// point, or that it does not.
-    pub fn settles(&self, around: &Surroundings, leaf: NodeId, inside: bool) -> bool {
-        let (mut node, mut inside) = (leaf, inside);
+    /// Whether membership is the same for all choices of the other primitives, where the point is
+    /// inside or outside one of them. False if that is not determined.
+    pub fn is_constant(&self, around: &Surroundings, leaf: NodeId, side: Containment) -> bool {
+        let (mut node, mut inside) = (leaf, side == Containment::Inside);
         while Some(node) != around.top {
             let Some(ParentLink { parent, place }) = self.parents[node.index()] else {
                 return false;
@@ -220,14 +228,14 @@ impl<'a> Membership<'a> {
             if self.hold(parent, choice).is_none() {
                 return false;
             }
-            let is_settled = match (op, inside) {
+            let is_determined = match (op, inside) {
                 (Operation::Union, true) | (Operation::Intersection, false) => true,
                 (Operation::Union, false) => choice.present() == 1,
                 (Operation::Intersection, true) => false,
                 (Operation::Difference, true) => place > 0 || choice.open == 0,
                 (Operation::Difference, false) => place == 0,
             };
-            if !is_settled {
+            if !is_determined {
                 return false;
             }
             inside &= place == 0 || *op != Operation::Difference;
@@ -236,7 +244,7 @@ impl<'a> Membership<'a> {
         true
     }
 
-    /// What is known where some primitives contain a point, and others may contain it.
+    /// What is known of a point that the primitives `held` contain and `open` may contain.
     fn around(&self, held: &[NodeId], open: &[NodeId]) -> Surroundings {
         let mut around = Surroundings::default();
         let mut waiting: BTreeMap<NodeId, Choice> = BTreeMap::new();
@@ -377,8 +385,8 @@ mod tests {
 
     /// Every set of leaves that may contain a point, every one of them, and both answers for it.
     #[test]
-    fn where_a_leaf_settles_the_tree_the_others_change_nothing() {
-        let mut settled = 0;
+    fn constant_membership_is_the_same_for_all_choices() {
+        let mut constant = 0;
         for part in PARTS {
             let tree = tree(part);
             let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
@@ -397,41 +405,43 @@ mod tests {
                     continue;
                 }
                 for (i, &leaf) in leaves.iter().enumerate() {
-                    for inside in [false, true] {
+                    for side in [Containment::Outside, Containment::Inside] {
+                        let inside = side == Containment::Inside;
                         let fixed = |set: &u32| (set & (1 << i) != 0) == inside;
                         let is_open = open & (1 << i) != 0;
-                        if !is_open || !membership.settles(&around, leaf, inside) {
+                        if !is_open || !membership.is_constant(&around, leaf, side) {
                             continue;
                         }
-                        settled += 1;
+                        constant += 1;
                         let mut answers = subsets()
                             .filter(fixed)
                             .map(|set| membership.contains(&chosen(set)));
                         let first = answers.next().unwrap();
-                        let of = format!("{part} {open:b} {i} {inside}");
+                        let of = format!("{part} {open:b} {i} {side:?}");
                         assert!(answers.all(|answer| answer == first), "{of}");
                     }
                 }
             }
         }
-        assert!(settled > 100, "{settled}");
+        assert!(constant > 100, "{constant}");
     }
 
     #[test]
-    fn a_member_of_a_union_settles_it() {
+    fn membership_is_constant_inside_a_member_of_a_union() {
         let tree = tree("A UN A UN (A DIF A)");
         let leaves: Vec<NodeId> = tree.leaves().map(|leaf| leaf.0).collect();
         let membership = Membership::new(&tree);
         let around = membership.surroundings(&leaves);
-        let settles = |i: usize, inside| membership.settles(&around, leaves[i], inside);
-        assert_eq!(
-            [0, 1, 2, 3].map(|i| settles(i, true)),
-            [true, true, false, false]
-        );
-        assert_eq!([0, 1, 2, 3].map(|i| settles(i, false)), [false; 4]);
+        let constant = |side| -> Vec<bool> {
+            let leaves = leaves.iter();
+            let constant = leaves.map(|&leaf| membership.is_constant(&around, leaf, side));
+            constant.collect()
+        };
+        assert_eq!(constant(Containment::Inside), [true, true, false, false]);
+        assert_eq!(constant(Containment::Outside), [false; 4]);
         // Away from what is taken away, the minuend is a member.
         let around = membership.surroundings(&leaves[..3]);
-        assert!(membership.settles(&around, leaves[2], true));
+        assert!(membership.is_constant(&around, leaves[2], Containment::Inside));
     }
 
     #[test]

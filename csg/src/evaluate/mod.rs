@@ -23,10 +23,10 @@
 //! | `facet_joints` | the corners and edges of polyhedra, which are known from the start |
 //! | `wall_joints` | moves a curve of contact to the end of the walls that meet there |
 //! | `tangent_contacts` | moves a curve of contact onto a curve that runs next to it |
-//! | `culling` | leaves out the parts of curves near which the tree is settled |
+//! | `culling` | leaves out the parts of curves near which membership is constant |
 //! | `split_curves` | the common points of curves and carriers |
 //! | `vertices` | equal points merged |
-//! | `corner_sharing` | adds every corner to all curves through it |
+//! | `vertex_incidence` | adds every corner to all curves through it |
 //! | `edge_candidates` | the pieces of curves between vertices |
 //! | `membership` | whether a choice of sides is material, by the tree |
 //! | `radial_order` | the order of carriers around a piece |
@@ -46,7 +46,6 @@ mod arrangement;
 mod carrier_intersections;
 mod close_calls;
 mod components;
-mod corner_sharing;
 mod culling;
 mod distinct_surfaces;
 mod edge_candidates;
@@ -78,6 +77,7 @@ mod settings;
 mod split_curves;
 mod tangent_contacts;
 mod vanished;
+mod vertex_incidence;
 mod vertices;
 mod wall_joints;
 mod walls;

@@ -38,7 +38,8 @@ pub(super) struct Later<N: Float = f64> {
 }
 
 impl<N: Float> Arrangement<N> {
-    /// The points at which the carriers of all faces close to a curve split it. Nothing is merged yet.
+    /// The points at which the carriers of all faces close to a curve split it. Points that coincide are
+    /// not merged yet.
     pub(super) fn splits_of(
         &self,
         index: usize,
@@ -67,7 +68,7 @@ impl<N: Float> Arrangement<N> {
         Ok(splits)
     }
 
-    /// Splits a curve; points that coincide become one corner.
+    /// Splits a curve. Points that coincide become one corner.
     pub(super) fn split(
         &mut self,
         index: usize,
@@ -288,11 +289,11 @@ pub(super) struct SplitPoint<N: Float = f64> {
     through: Through,
 }
 
-/// The carriers of which a point of a curve is known to be.
+/// The carriers that are known to contain a point of a curve.
 enum Through {
-    /// Another than the curve's, at a point known before.
+    /// A further carrier, at a point known beforehand.
     One([usize; 1]),
-    /// Two of the curve and another.
+    /// Two carriers of the curve, and a third one.
     Three([usize; 3]),
 }
 

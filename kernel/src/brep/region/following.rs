@@ -90,9 +90,9 @@ impl<N: Float> Sorter<'_, N> {
         true
     }
 
-    /// Follows a straight path to a point that is beyond the box of the starting loop and outside the
-    /// region of that loop: the first exit from a region beyond that box. Joins the loops that the path crosses. Returns false if anything is
-    /// unclear, or if the path ends in the region.
+    /// Follows a straight path to the first exit from a region beyond the box of the starting loop.
+    /// That point is outside the region of the loop. Joins the loops that the path crosses. Returns
+    /// false if anything is unclear, or if the path ends in the region.
     ///
     /// This joins all loops of a region. All paths have one direction. Let the reach of a loop be
     /// its greatest coordinate in that direction. By Jordan's theorem, a path that leaves a region

@@ -1,5 +1,5 @@
-//! Adds every corner to all curves that pass through it, and the carriers of these to the corner. Each
-//! point was found from two carriers of its curve and a third one.
+//! The incidence of corners and curves: adds every corner to all curves that pass through it, and the
+//! carriers of these to the corner.
 
 use super::arrangement::{Arrangement, Cut, IntersectionCurve, is_one_pass};
 use super::split_curves::in_range;
@@ -17,7 +17,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 impl<N: Float> Arrangement<N> {
     /// Adds to every curve the corners of its carriers, and to every corner the carriers of the
     /// curves through it. Each cut was found from two carriers of the curve and a third one.
-    pub(super) fn share_corners(&mut self, predicates: &Predicates) {
+    pub(super) fn complete_incidence(&mut self, predicates: &Predicates) {
         let index = CurveIndex::new(&self.meetings, predicates);
         let mut cut_at: Vec<Vec<usize>> = vec![Vec::new(); self.corners.len()];
         for (i, m) in self.meetings.iter().enumerate() {
@@ -58,7 +58,7 @@ impl<N: Float> Arrangement<N> {
     }
 }
 
-/// The number of curves of one pair of carriers from which a tree of their boxes is worth its cost.
+/// The least number of curves of one pair of carriers with a tree of their boxes.
 const MANY_CURVES: usize = 16;
 
 /// The curves in a pair of carriers.

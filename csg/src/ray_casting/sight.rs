@@ -120,15 +120,15 @@ impl RayOracle {
                 return Err(SightEvidence::Mixed);
             }
             // The distance to the point's own faces decreases as the line of sight approaches the
-            // point; that to another face does not, however close it is.
-            let close = first_exit(&lateral, least);
-            if close < depth {
+            // point; that to another face does not, however close it is, and however many own faces
+            // lie before it.
+            if let Some(close) = last_exit(&lateral, [least, depth]) {
                 let (closer, _) = at_lateral(clearance.lateral * CLOSER)?;
-                let drawn = first_exit(&closer, 0.0);
-                if drawn >= close * DRAWN {
+                let drawn = last_exit(&closer, [0.0, depth]);
+                if drawn.is_none_or(|drawn| drawn >= close * DRAWN) {
                     return Err(SightEvidence::Close);
                 }
-                folds |= drawn > close * FOLDED;
+                folds |= drawn.is_some_and(|drawn| drawn > close * FOLDED);
             }
         }
         Ok(match folds {
@@ -162,10 +162,10 @@ impl RayOracle {
     }
 }
 
-/// The first end of material beyond `from`.
-fn first_exit(intervals: &[[f64; 2]], from: f64) -> f64 {
-    let ends = intervals.iter().map(|i| i[1]).filter(|end| *end > from);
-    ends.fold(f64::INFINITY, f64::min)
+/// The last end of material between two distances.
+fn last_exit(intervals: &[[f64; 2]], [from, to]: [f64; 2]) -> Option<f64> {
+    let ends = intervals.iter().map(|i| i[1]);
+    ends.filter(|end| *end > from && *end < to).reduce(f64::max)
 }
 
 fn entries(intervals: &[[f64; 2]], from: f64, to: f64) -> u32 {

@@ -203,6 +203,17 @@ fn a_fold_next_to_a_point_is_not_told_from_its_own() {
     assert_eq!(count(1.0, 0.8, 0.6), SightEvidence::Count(0));
 }
 
+/// A cone that stands on a second one with the same rim, 1e-5 below. Lines of sight inside the rim
+/// leave the lower one right above the point, and the upper one right above that.
+#[test]
+fn a_face_behind_an_own_one_is_close() {
+    let part = material("P = CON(R=0.5, H=3) UN CON(R=0.5, H=1.5) AT (MOVZ=-0.00001)");
+    let below = from_above(&part, 4.0, [0.5 + 1e-12, 0.0, -1e-5]);
+    assert_eq!(below, SightEvidence::Close);
+    let above = from_above(&part, 4.0, [0.5 + 1e-12, 0.0, 0.0]);
+    assert_eq!(above, SightEvidence::Count(0));
+}
+
 #[test]
 fn a_thousand_primitives() {
     let balls: Vec<String> = (0..1000)

@@ -49,7 +49,14 @@ pub enum SheetFault {
     /// A stroke lies on no contour of its kind.
     Stray(Point2<f64>),
     /// A drawn contour is on no stroke, or a visible one on hidden strokes only.
-    Undrawn(Point2<f64>),
+    Undrawn {
+        /// The position in the drawing.
+        place: Point2<f64>,
+        /// The contour.
+        contour: u32,
+        /// The index of its piece.
+        piece: usize,
+    },
     /// Two strokes overlap.
     Twice(Point2<f64>),
     /// The length read back differs from the one drawn.
@@ -254,10 +261,11 @@ impl SheetReport {
             (smooth || !c.smooth) && !matches!(c.image_curve, ImageCurve::Point { .. })
         });
         let pieces: Vec<_> = drawn
-            .flat_map(|c| c.pieces.iter().map(move |piece| (c, piece)))
+            .flat_map(|c| c.pieces.iter().enumerate().map(move |piece| (c, piece)))
             .collect();
         let mut undrawn = Vec::new();
-        for (contour, piece) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1)) {
+        for &(contour, (index, piece)) in pieces.iter().step_by(pieces.len().div_ceil(MOST).max(1))
+        {
             let [lo, hi] = piece.range;
             let at = |part: f64| {
                 projection.project_y_up(&contour.space_curve.point(lo + (hi - lo) * part))
@@ -272,6 +280,8 @@ impl SheetReport {
             self.right += ON_PIECES.len() - missing.len();
             if !missing.is_empty() {
                 undrawn.push(UndrawnPiece {
+                    contour: contour.id,
+                    index,
                     ends: [piece.start, piece.end],
                     extent: [0.0, 0.5, 1.0].map(at),
                     missing,
@@ -283,19 +293,36 @@ impl SheetReport {
             let points = || group.iter().flat_map(|piece| piece.extent);
             points().any(|a| points().any(|b| (a - b).norm() > tolerance))
         });
-        let places = faults.flatten().flat_map(|piece| piece.missing);
-        self.faults.extend(places.map(SheetFault::Undrawn));
+        self.faults
+            .extend(faults.flatten().flat_map(UndrawnPiece::faults));
     }
 }
 
 /// A piece of a contour that is not on a stroke everywhere.
 struct UndrawnPiece {
+    /// The contour.
+    contour: u32,
+    /// The index of the piece in the contour.
+    index: usize,
     /// The junctions at its ends.
     ends: [Option<u32>; 2],
     /// Its ends and its middle, in the drawing.
     extent: [Point2<f64>; 3],
     /// Where it is not drawn.
     missing: Vec<Point2<f64>>,
+}
+
+impl UndrawnPiece {
+    /// A fault for each place that is not drawn.
+    fn faults(self) -> impl Iterator<Item = SheetFault> {
+        let (contour, piece) = (self.contour, self.index);
+        let fault = move |place| SheetFault::Undrawn {
+            place,
+            contour,
+            piece,
+        };
+        self.missing.into_iter().map(fault)
+    }
 }
 
 /// Pieces in groups that are connected by junctions.
@@ -337,7 +364,14 @@ impl fmt::Display for SheetFault {
         let mut at = |text: &str, p: &Point2<f64>| write!(f, "{text} at ({:.6}, {:.6})", p.x, p.y);
         match self {
             Self::Stray(p) => at("a stroke on no contour of its kind", p),
-            Self::Undrawn(p) => at("a contour that is not drawn", p),
+            Self::Undrawn {
+                place,
+                contour,
+                piece,
+            } => at(
+                &format!("contour {contour} piece {piece} that is not drawn"),
+                place,
+            ),
             Self::Twice(p) => at("two strokes on one another", p),
             Self::Length {
                 format,
@@ -404,7 +438,7 @@ mod tests {
     fn what_is_wrong_on_a_sheet_is_found() {
         let lost = report(|strokes| drop(strokes.pop()));
         assert!(
-            has(&lost, |f| matches!(f, SheetFault::Undrawn(_))),
+            has(&lost, |f| matches!(f, SheetFault::Undrawn { .. })),
             "{lost}"
         );
         // A hidden line under a visible one.

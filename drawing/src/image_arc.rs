@@ -166,6 +166,15 @@ impl ImageArc<'_> {
         }
     }
 
+    /// The parameters at fractions of the length between two parameters, approximately. Over a
+    /// projected curve's parameter the speed may change by any factor.
+    pub fn at_lengths<const N: usize>(&self, [lo, hi]: [f64; 2], parts: [f64; N]) -> [f64; N] {
+        match self {
+            Self::Projected(arc) => arc.at_lengths([lo, hi], parts),
+            Self::Segment(_) | Self::Elliptic { .. } => parts.map(|part| lo + (hi - lo) * part),
+        }
+    }
+
     /// The approximate greatest distance of its points from its start.
     pub fn reach(&self) -> f64 {
         let [lo, hi] = self.range();

@@ -170,28 +170,40 @@ impl<'c> ArcMaker<'c> {
     }
 
     fn projected(&self, contour: &'c Contour, [lo, hi]: [f64; 2]) -> ImageArc<'c> {
-        let sample = |t: f64| Sample {
-            t,
-            point: self.point(contour, t),
+        let refinement = Refinement {
+            curve: &contour.space_curve,
+            projection: self.projection,
+            distance: self.distance,
         };
-        let mut samples = vec![sample(lo)];
+        let mut samples = vec![refinement.sample(lo)];
         for pair in contour.space_curve.breaks(lo, hi).windows(2) {
-            let ends = [sample(pair[0]), sample(pair[1])];
-            self.refine(&sample, ends, 0, &mut samples);
+            let ends = [refinement.sample(pair[0]), refinement.sample(pair[1])];
+            refinement.refine(ends, 0, &mut samples);
         }
         let (projection, curve) = (self.projection, &contour.space_curve);
         let image = move |t: f64| projection.project_y_up(&curve.point(t));
         ImageArc::Projected(ProjectedArc::new(Rc::new(image), samples))
     }
+}
+
+/// The refinement of a polyline until it follows the image of a curve.
+struct Refinement<'c> {
+    curve: &'c Curve,
+    projection: &'c Projection,
+    /// The greatest distance of the polyline from the image.
+    distance: f64,
+}
+
+impl Refinement<'_> {
+    fn sample(&self, t: f64) -> Sample {
+        Sample {
+            t,
+            point: self.projection.project_y_up(&self.curve.point(t)),
+        }
+    }
 
     /// Adds the samples after the first of two, so that the polyline is within the distance.
-    fn refine(
-        &self,
-        sample: &impl Fn(f64) -> Sample,
-        [a, b]: [Sample; 2],
-        depth: u32,
-        out: &mut Vec<Sample>,
-    ) {
+    fn refine(&self, [a, b]: [Sample; 2], depth: u32, out: &mut Vec<Sample>) {
         let chord = b.point - a.point;
         let square = chord.norm_squared();
         // From the chord, not from its line: near a cusp the image overshoots and comes back.
@@ -203,16 +215,35 @@ impl<'c> ArcMaker<'c> {
             };
             (d - chord * foot.clamp(0.0, 1.0)).norm()
         };
-        let inner = [0.25, 0.5, 0.75].map(|part| sample(a.t + (b.t - a.t) * part));
+        let inner = [0.25, 0.5, 0.75].map(|part| self.sample(a.t + (b.t - a.t) * part));
         let worst = inner.iter().map(deviation).fold(0.0, f64::max);
+        let worst = worst.max(self.overshoot(&a, &b));
         // Half the distance, because the largest deviation lies between the three points.
         if depth >= HALVINGS || (depth >= 1 && worst <= 0.5 * self.distance) {
             out.push(b);
             return;
         }
         let middle = inner[1];
-        self.refine(sample, [a, middle], depth + 1, out);
-        self.refine(sample, [middle, b], depth + 1, out);
+        self.refine([a, middle], depth + 1, out);
+        self.refine([middle, b], depth + 1, out);
+    }
+
+    /// How far the image between two samples folds back beyond one of them: by the control points
+    /// of the cubic with the same ends and tangents. The samples between them need not see the
+    /// fold.
+    fn overshoot(&self, a: &Sample, b: &Sample) -> f64 {
+        let chord = b.point - a.point;
+        let third = (b.t - a.t) / 3.0;
+        let beyond = [a, b].map(|s| {
+            let velocity = self
+                .projection
+                .velocity_y_up(&self.curve.point(s.t), &self.curve.derivative(s.t));
+            match velocity.dot(&chord) < 0.0 {
+                true => velocity.norm() * third,
+                false => 0.0,
+            }
+        });
+        beyond[0].max(beyond[1])
     }
 }
 

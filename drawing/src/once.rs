@@ -154,11 +154,7 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
     let mut covered: Vec<[f64; 2]> = Vec::new();
     for pair in stops.windows(2).filter(|pair| pair[0] < pair[1]) {
         let span = [pair[0], pair[1]];
-        let search = Search {
-            arc,
-            span,
-            tolerance,
-        };
+        let search = Search::new(arc, span, tolerance);
         match others.iter().any(|other| search.is_whole(other)) {
             true => covered.push(span),
             false => covered.extend(others.iter().flat_map(|other| search.stretches(other))),
@@ -201,7 +197,7 @@ fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
     is_supported && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
 }
 
-/// The fractions between two stops at which an arc is compared with another.
+/// The fractions of the length between two stops at which an arc is compared with another.
 const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 /// Curves that cross or are tangent are within the tolerance over less than this many times of it:
 /// tangent ones over about the root of the tolerance and the drawing's size.
@@ -224,10 +220,21 @@ struct Run {
 struct Search<'a, 'c> {
     arc: &'a ImageArc<'c>,
     span: [f64; 2],
+    /// The parameters at `PLACES`.
+    places: [f64; 5],
     tolerance: f64,
 }
 
-impl Search<'_, '_> {
+impl<'a, 'c> Search<'a, 'c> {
+    fn new(arc: &'a ImageArc<'c>, span: [f64; 2], tolerance: f64) -> Self {
+        Self {
+            arc,
+            span,
+            places: arc.at_lengths(span, PLACES),
+            tolerance,
+        }
+    }
+
     fn is_on(&self, t: f64, other: &ImageArc<'_>) -> bool {
         let found = other.nearest_within(&self.arc.point(t), self.tolerance);
         found.is_some()
@@ -236,9 +243,7 @@ impl Search<'_, '_> {
     /// Whether the whole span runs along another arc: analytic curves that coincide over a range
     /// coincide up to an end of one of them.
     fn is_whole(&self, other: &ImageArc<'_>) -> bool {
-        let [lo, hi] = self.span;
-        let mut places = PLACES.iter().map(|part| lo + (hi - lo) * part);
-        places.all(|t| self.is_on(t, other))
+        self.places.iter().all(|&t| self.is_on(t, other))
     }
 
     /// The ranges over which another arc stays within the tolerance, without those where the two

@@ -162,7 +162,12 @@ impl<'c> ProjectedArc<'c> {
 
     /// The arc over a part of its range.
     #[must_use]
-    pub fn part(&self, [lo, hi]: [f64; 2]) -> Self {
+    pub fn part(&self, range: [f64; 2]) -> Self {
+        Self::new(Rc::clone(&self.curve), self.samples_over(range))
+    }
+
+    /// The samples over a part of its range, with its ends.
+    fn samples_over(&self, [lo, hi]: [f64; 2]) -> Vec<Sample> {
         let end = |t: f64| Sample {
             t,
             point: self.point(t),
@@ -171,7 +176,30 @@ impl<'c> ProjectedArc<'c> {
         let mut part = vec![end(lo)];
         part.extend(inner);
         part.push(end(hi));
-        Self::new(Rc::clone(&self.curve), part)
+        part
+    }
+
+    /// The parameters at fractions of the length between two parameters, by the polyline.
+    pub fn at_lengths<const N: usize>(&self, range: [f64; 2], parts: [f64; N]) -> [f64; N] {
+        let samples = self.samples_over(range);
+        let mut lengths = vec![0.0];
+        for side in samples.windows(2) {
+            let before = lengths[lengths.len() - 1];
+            lengths.push(before + distance(&side[0].point, &side[1].point));
+        }
+        let whole = lengths[lengths.len() - 1];
+        parts.map(|part| {
+            let length = whole * part;
+            let side = lengths.partition_point(|l| *l <= length);
+            let side = side.clamp(1, samples.len() - 1);
+            let step = lengths[side] - lengths[side - 1];
+            let along = match step > 0.0 {
+                true => (length - lengths[side - 1]) / step,
+                false => 0.5,
+            };
+            let [from, to] = [samples[side - 1].t, samples[side].t];
+            from + (to - from) * along
+        })
     }
 }
 
@@ -198,6 +226,19 @@ const GOLDEN_STEPS: u32 = 44;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of y = 0, x = t⁸, a fraction f of the length lies before t = f^(1/8).
+    #[test]
+    fn parameters_are_at_fractions_of_the_length() {
+        let curve = |t: f64| Point2::new(t.powi(8), 0.0);
+        let samples = (0..=1000).map(|k| f64::from(k) / 1000.0);
+        let samples = samples.map(|t| Sample { t, point: curve(t) }).collect();
+        let arc = ProjectedArc::new(Rc::new(curve), samples);
+        let at = arc.at_lengths([0.0, 1.0], [0.1, 0.5, 1.0]);
+        for (t, part) in at.into_iter().zip([0.1f64, 0.5, 1.0]) {
+            assert!((t - part.powf(0.125)).abs() < 1e-5, "{t}");
+        }
+    }
 
     /// A spiral of 2,000 sides: the index finds the side that a search through all of them finds.
     #[test]

@@ -6,7 +6,7 @@
 //! frame is x right, y up (or down, for pixels), z into the scene.
 
 use crate::camera::{CameraModel, ViewCamera};
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 use premio_kernel::geometry::frame::perpendicular;
 use premio_kernel::number::analytic::dot;
 use premio_kernel::number::float::Analytic;
@@ -209,6 +209,14 @@ impl Projection {
     /// The image of a point with y up, whichever way the camera's y points.
     pub fn project_y_up(&self, p: &Point3<f64>) -> Point2<f64> {
         self.flipped(self.project(p))
+    }
+
+    /// The velocity of the image of a point that moves with a velocity in space, with y up.
+    pub fn velocity_y_up(&self, p: &Point3<f64>, velocity: &Vector3<f64>) -> Vector2<f64> {
+        let (h, d) = (self.homogeneous(p), self.homogeneous_vector(velocity));
+        let moved = self.affine * ((d - h * (d.z / h.z)) / h.z);
+        let flip = if self.y_down { -1.0 } else { 1.0 };
+        Vector2::new(moved.x, moved.y * flip)
     }
 
     /// The line of sight through an image point with y up.

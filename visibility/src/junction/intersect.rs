@@ -15,7 +15,7 @@ use crate::image_curve::{Basis, Image, flat_of, line_on_conic};
 use crate::junction::intersect_general::general_pair;
 use crate::scene::Scene;
 use crate::scene::tolerance::IMAGE_TOLERANCE;
-use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector2, Vector3};
 use premio_kernel::number::analytic::dot;
 use premio_kernel::number::bisection::bisect;
 use premio_kernel::number::float::Analytic;
@@ -148,6 +148,19 @@ impl<'x> ConicImage<'x> {
         }
     }
 
+    /// The ratio of the area to the sum of the squares of two conjugate radii, at the origin of the
+    /// basis: a half for a circle, zero for a conic seen edge-on.
+    fn roundness(&self) -> f64 {
+        let origin = self.map.column(2);
+        let radius = |i: usize| {
+            let column = self.map.column(i);
+            let across = |k: usize| column[k] * origin.z - origin[k] * column.z;
+            Vector2::new(across(0), across(1))
+        };
+        let [p, q] = [radius(0), radius(1)];
+        p.perp(&q).abs() / (p.norm_squared() + q.norm_squared())
+    }
+
     /// Whether an image point lies within `near` of it, as a distance in space, or within rounding
     /// error.
     fn passes(&self, h: &Vector3<f64>, near: f64) -> bool {
@@ -206,6 +219,8 @@ fn line_and_conic(
     Overlap::No
 }
 
+/// Both on conics. The points of the thinner one are substituted into the equation of the other: in
+/// the other order the two crossings of a thin ellipse are almost a double root.
 fn conics(
     a: &ContourArc<'_>,
     b: &ContourArc<'_>,
@@ -215,6 +230,18 @@ fn conics(
     let (Some(first), Some(second)) = (ConicImage::new(&a.image), ConicImage::new(&b.image)) else {
         return Overlap::No;
     };
+    if second.roundness().is_short_of(first.roundness()) {
+        return conics_in_order([b, a], [second, first], near, &mut |s, t| found(t, s));
+    }
+    conics_in_order([a, b], [first, second], near, found)
+}
+
+fn conics_in_order(
+    [a, b]: [&ContourArc<'_>; 2],
+    [first, second]: [ConicImage<'_>; 2],
+    near: f64,
+    found: &mut impl FnMut(f64, f64),
+) -> Overlap {
     let [lo, hi] = a.range;
     let touches = |t: f64| second.passes(&(first.map * first.basis.at(t)), near);
     // Five points determine a conic.

@@ -1,51 +1,31 @@
-//! T-junctions: the pairs of contours that can cross in the image, and what a crossing does.
-//!
-//! Notation: v is the unit vector towards the eye, T the direction of the nearer contour, U that
-//! of the farther one. A face to the left of T (seen from outside) lies in the image on the side
-//! on which det(T, ·, v) has the sign of N·v: so a face turned towards the eye begins to hide the
-//! farther contour where its loop's sense along T has the sign of det(T, U, v), else it ceases to.
-//! The folded sheet of a limb lies towards -N, or towards N where the surface is hollow along the
-//! line of sight.
+//! T-junctions: the pairs of contours that can cross in the image, and where they do.
 
 mod arc_position;
 mod broad_phase;
 mod intersect;
 mod intersect_general;
 pub(crate) mod overlap;
+mod passing;
 pub(crate) mod snap;
 
-use crate::contour_generator::contour_arc::{
-    ArcFace, ArcJunction, Change, ContourArc, Passing, Split,
-};
+use crate::contour_generator::contour_arc::{ArcJunction, Change, ContourArc, Split};
 use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
 use crate::image_curve::{Image, flat_of};
 use crate::junction::arc_position::{ArcPosition, ArcSplit, CrossedArc, IndexedArc};
 use crate::junction::broad_phase::candidates;
 use crate::junction::intersect::{Overlap, cross, parameters_at};
+use crate::junction::passing::{change, is_turned_away};
 use crate::junction::snap::{Settled, nearest_turn, settle, split_at_touches};
 use crate::scene::Scene;
 use crate::scene::tolerance::IMAGE_TOLERANCE;
 use nalgebra::{Point3, Vector3};
-use premio_kernel::brep::topology::{FaceId, Sense};
-use premio_kernel::geometry::surface::Surface;
-use premio_kernel::number::predicates::{Compare, ROUNDING};
+use premio_kernel::number::predicates::Compare;
 
 /// Whether an arc passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
 fn passes_once(contour_arc: &ContourArc<'_>, id: u32) -> bool {
     matches!(contour_arc.image, Image::Line { .. })
         && contour_arc.junctions().any(|own| own.junction == id)
-}
-
-/// The effect of a contour on one that passes behind it.
-#[derive(Clone, Copy, Debug)]
-struct Hidden {
-    /// The face that begins to hide it.
-    entered: Option<FaceId>,
-    /// The face that ceases to.
-    left: Option<FaceId>,
-    /// Its lateral distance from the nearer contour in the image per unit of its length.
-    lateral: f64,
 }
 
 struct Search<'s, 'a, 'j, 'p> {
@@ -268,10 +248,13 @@ impl Search<'_, '_, '_, '_> {
         if ahead.is_within(2.0 * near) {
             self.mark_ambiguous(a, t);
             self.mark_ambiguous(b, s);
-            if !t.at_end && !s.at_end {
-                self.meeting([first.moved_to(t.t), second.moved_to(s.t)], &p);
-            }
-            return;
+            let both = [first.moved_to(t.t), second.moved_to(s.t)];
+            return match [t.at_end, s.at_end] {
+                [false, false] => self.meeting(both, &p),
+                [false, true] => self.passing(both[0], b, s),
+                [true, false] => self.passing(both[1], a, t),
+                [true, true] => {}
+            };
         }
         let (first, second) = (first.crossed(t, p), second.crossed(s, q));
         if ahead.is_above_zero() {
@@ -299,6 +282,31 @@ impl Search<'_, '_, '_, '_> {
                 change,
             },
         }));
+    }
+
+    /// Cuts an arc that passes, in space, through the end of another: a limb through a corner of
+    /// its face. The faces at the corner end there.
+    fn passing(&mut self, position: ArcPosition<'_, '_>, other: &ContourArc<'_>, end: Settled) {
+        let [lo, hi] = other.range;
+        let nearest = usize::from((end.t - lo).is_beyond(hi - end.t));
+        let Some(junction) = other.ends[nearest] else {
+            return;
+        };
+        let is_known =
+            |known: &ArcSplit| known.index == position.index && known.split.junction == junction;
+        if self.splits.iter().any(is_known) {
+            return;
+        }
+        let contours = &mut self.junctions.list[junction as usize].contours;
+        contours.push(position.arc.contour);
+        self.splits.push(ArcSplit {
+            index: position.index,
+            split: Split {
+                t: position.t,
+                junction,
+                change: Change::Correct,
+            },
+        });
     }
 
     /// Handles turning points of an arc's image that touch another contour without a crossing of
@@ -400,7 +408,7 @@ impl Search<'_, '_, '_, '_> {
         let own = |other: ArcJunction| {
             other.junction == junction && self.straight(far, nearest_turn(far, other.t, t), t)
         };
-        if far.junctions().any(own) || self.is_turned_away(near, q, &v) {
+        if far.junctions().any(own) || is_turned_away(self.scene, near, q, &v) {
             return None;
         }
         Some(Behind {
@@ -408,22 +416,6 @@ impl Search<'_, '_, '_, '_> {
             t,
             contours: [near.contour, far.contour],
         })
-    }
-
-    /// Whether all faces along an arc are turned away at a point of it, or seen edge-on, so that
-    /// they hide nothing.
-    fn is_turned_away(
-        &self,
-        contour_arc: &ContourArc<'_>,
-        q: &Point3<f64>,
-        v: &Vector3<f64>,
-    ) -> bool {
-        let t = contour_arc.curve.tangent(contour_arc.curve.parameter(q));
-        let hides = |&ArcFace { face, sense }: &ArcFace| {
-            let side = self.image_side(contour_arc, face, sense, &t, q, v);
-            !side.is_some_and(|side| side.is_exactly(0.0))
-        };
-        !contour_arc.faces.iter().any(hides)
     }
 
     /// Marks all junctions of an arc as ambiguous, because another contour overlaps it.
@@ -446,44 +438,11 @@ impl Search<'_, '_, '_, '_> {
             return self.mark_ambiguous(far, t);
         }
         // An invisible contour has no junction.
-        let Some(change) = self.change(&nearer, &farther, v) else {
+        let Some(change) = change(self.scene, &nearer, &farther, v) else {
             return;
         };
         let position = IndexedArc::new(farther.index, far).at(t.t);
         self.split(position, &p, [near.contour, far.contour], change);
-    }
-
-    /// The effect of a crossing on the farther contour; `None` if the nearer contour's faces are
-    /// turned away, and change nothing.
-    fn change(
-        &self,
-        nearer: &CrossedArc<'_, '_>,
-        farther: &CrossedArc<'_, '_>,
-        v: &Vector3<f64>,
-    ) -> Option<Change> {
-        if nearer.at.at_end {
-            return Some(Change::Correct);
-        }
-        let along = farther.arc.curve.tangent(farther.at.t);
-        match self.hidden_by(nearer.arc, nearer.at.t, &nearer.point, &along, v) {
-            Some(Hidden {
-                entered: None,
-                left: None,
-                ..
-            }) => None,
-            Some(Hidden {
-                entered,
-                left,
-                lateral,
-            }) => Some(Change::Pass(Passing {
-                by: i32::from(entered.is_some()) - i32::from(left.is_some()),
-                entered,
-                left,
-                ahead: (nearer.point - farther.point).dot(v),
-                lateral,
-            })),
-            None => Some(Change::Correct),
-        }
     }
 
     /// Splits an arc at a new junction of two contours.
@@ -506,79 +465,6 @@ impl Search<'_, '_, '_, '_> {
                 change,
             },
         });
-    }
-
-    /// The faces that begin and cease to hide what passes behind `near` at `q` in the direction
-    /// `u`; none where that is ambiguous, or more than one face does.
-    fn hidden_by(
-        &self,
-        near: &ContourArc<'_>,
-        s: f64,
-        q: &Point3<f64>,
-        u: &Vector3<f64>,
-        v: &Vector3<f64>,
-    ) -> Option<Hidden> {
-        let flat = ROUNDING.sqrt();
-        let t = near.curve.tangent(s);
-        let turn = t.cross(u).dot(v);
-        if turn.is_within(flat) {
-            return None;
-        }
-        let (mut entered, mut left) = (None, None);
-        for &ArcFace { face, sense } in &near.faces {
-            let side = self.image_side(near, face, sense, &t, q, v)?;
-            let slot = match side * turn {
-                x if x.is_above_zero() => &mut entered,
-                x if x.is_below_zero() => &mut left,
-                _ => continue,
-            };
-            if slot.replace(face).is_some() {
-                return None;
-            }
-        }
-        let lateral = turn.abs() / t.cross(v).norm();
-        Some(Hidden {
-            entered,
-            left,
-            lateral,
-        })
-    }
-
-    /// The side of a contour on which one of its faces hides what is behind: the sign of det(t, ·,
-    /// v), zero for a face turned away, none where it is ambiguous.
-    fn image_side(
-        &self,
-        near: &ContourArc<'_>,
-        face: FaceId,
-        sense: Sense,
-        t: &Vector3<f64>,
-        q: &Point3<f64>,
-        v: &Vector3<f64>,
-    ) -> Option<f64> {
-        let flat = ROUNDING.sqrt();
-        let n = self.scene.brep.outward(face, q);
-        if near.limb {
-            let surface = self.scene.brep.surface(face);
-            let sign = if self.scene.along(face) { 1.0 } else { -1.0 };
-            let bend = sign * surface.normal_curvature(q, v);
-            let side = -t.cross(&n).dot(v) * bend.signum();
-            let is_clear = side.abs().is_beyond(flat) && !bend.is_exactly(0.0);
-            return is_clear.then_some(side.signum());
-        }
-        let facing = n.dot(v);
-        if facing.is_within(flat) {
-            // Edge-on planes hide nothing; a limb that runs along the edge is ambiguous.
-            return self.edge_on_plane(face).then_some(0.0);
-        }
-        let hides = facing.is_above_zero();
-        Some(if hides { sense.sign() } else { 0.0 })
-    }
-
-    fn edge_on_plane(&self, face: FaceId) -> bool {
-        match self.scene.brep.surface(face) {
-            Surface::Plane(s) => self.scene.edge_on(&s.frame.origin, &s.frame.z),
-            _ => false,
-        }
     }
 
     /// Splits an arc where `b`, which overlaps it in the image, begins and ends.

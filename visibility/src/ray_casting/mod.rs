@@ -129,8 +129,8 @@ struct Layer {
 /// The lateral distance from a contour at which its two sides are evaluated, in multiples of the
 /// resolution. It is greater than what counts as touching.
 const ASIDE: f64 = 64.0;
-/// The greatest distance along a line of sight between faces that touch, in multiples of the
-/// resolution.
+/// The greatest distance along a line of sight between faces that touch, and the greatest distance
+/// of a line from a surface that it touches, in multiples of the resolution.
 const TOUCHING: f64 = 4.0;
 
 /// The directions towards the two sides of a curve in the image, seen along `towards`; directions
@@ -241,6 +241,7 @@ impl Scene<'_> {
             let place = match query {
                 FaceQuery::Hiding if !front && !locator.on_boundary(&p) => continue,
                 FaceQuery::Hiding if !front => PointLocation::On,
+                _ if touches && self.touches_face(ray, face, s) => PointLocation::On,
                 _ => locator.place(&p),
             };
             if place == PointLocation::Outside {
@@ -253,6 +254,20 @@ impl Scene<'_> {
                 unambiguous: !touches && place == PointLocation::Inside,
             });
         }
+    }
+
+    /// Whether a line that touches the surface of a face at a distance `s` touches the face, at
+    /// either end of the length over which it is within the tolerance.
+    fn touches_face(&self, ray: &SightLine, face: FaceId, s: f64) -> bool {
+        let surface = self.brep.surface(face);
+        let p = ray.origin + ray.towards * s;
+        let bend = surface.normal_curvature(&p, &ray.towards).abs();
+        let half = (2.0 * TOUCHING * self.resolution / bend).sqrt();
+        let reaches = |s: f64| {
+            let q = ray.origin + ray.towards * s;
+            self.locator.place(face, &q) != PointLocation::Outside
+        };
+        half.is_finite() && (reaches(s - half) || reaches(s + half))
     }
 
     /// Whether a face is turned towards the eye at a point of it.
@@ -455,7 +470,8 @@ impl Scene<'_> {
                 continue;
             }
             let p = parallel.origin + towards * s;
-            if self.locator.place(hit.face, &p) != PointLocation::Outside {
+            let is_on_face = self.locator.place(hit.face, &p) != PointLocation::Outside;
+            if is_on_face || (touches && self.touches_face(&parallel, hit.face, s)) {
                 let front = touches || self.is_turned(hit.face, &p, &towards);
                 report(at, front);
             }

@@ -182,7 +182,7 @@ impl<N: Float> Height<N> {
                 sign,
             } => Height::Whole {
                 along: along.to_f64(),
-                radicand: radicand.map(N::rounded),
+                radicand: radicand.to_f64(),
                 sign: sign.rounded(),
             },
             Self::Deflated {
@@ -192,7 +192,7 @@ impl<N: Float> Height<N> {
                 sign,
             } => Height::Deflated {
                 along: along.to_f64(),
-                rest: rest.map(N::rounded),
+                rest: rest.to_f64(),
                 node: node.map(N::rounded),
                 sign: sign.rounded(),
             },

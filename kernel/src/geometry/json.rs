@@ -1,5 +1,6 @@
 //! Curves and surfaces as JSON: a type and exact parameters.
 
+use super::centred_trigonometric::CentredTrigonometric;
 use super::curve::Curve;
 use super::frame::Frame;
 use super::quadric_curve::{Height, QuadricCurve, Sweep};
@@ -123,14 +124,16 @@ fn quartic(q: &QuadricCurve) -> Value {
             radicand,
             sign,
         } => json!({"form": "whole", "lead": along.lead, "linear": along.linear,
-            "radicand": radicand, "sign": sign}),
+            "radicand": radicand.coefficients(), "sign": sign}),
         Height::Deflated {
             along,
             rest,
             node,
             sign,
-        } => json!({"form": "deflated", "lead": along.lead, "linear": along.linear, "rest": rest,
-            "node": node, "sign": sign}),
+        } => {
+            json!({"form": "deflated", "lead": along.lead, "linear": along.linear, "rest": linear_coefficients(rest),
+            "node": node, "sign": sign})
+        }
         Height::Rational { linear, constant } => {
             json!({"form": "rational", "linear": linear, "constant": constant})
         }
@@ -139,6 +142,12 @@ fn quartic(q: &QuadricCurve) -> Value {
         }
     };
     json!({"type": "quartic", "base": base, "sweep": sweep, "height": height})
+}
+
+/// The coefficients of 1, cos u and sin u of a polynomial of degree one.
+fn linear_coefficients(rest: &CentredTrigonometric) -> [f64; 3] {
+    let [mean, cos, sin, _, _] = rest.coefficients();
+    [mean, cos, sin]
 }
 
 fn toric(c: &TorusCurve) -> Value {

@@ -3,6 +3,7 @@
 pub mod bivariate_trig_poly;
 mod blow_up;
 pub mod bounds;
+pub(crate) mod centred_trigonometric;
 pub mod curve;
 pub mod curve_plane;
 pub mod curve_surface;

@@ -8,6 +8,7 @@
 //! between two simple roots u = mid - half cos t, and √Δ changes sign with sin t. At a double root
 //! √Δ changes sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
+use super::centred_trigonometric::CentredTrigonometric;
 use super::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use super::frame::Frame;
 use super::surface::{Cone, Cylinder, Surface};
@@ -135,13 +136,18 @@ impl<N: Float> Along<N> {
         }
     }
 
-    /// Δ; `whole` are its coefficients.
-    fn radicand<S: Analytic<Float = N>>(&self, whole: &Trig2<N>, u: S, at: (S, S)) -> S {
+    /// Δ; `whole` is the same as a polynomial.
+    fn radicand<S: Analytic<Float = N>>(
+        &self,
+        whole: &CentredTrigonometric<N>,
+        u: S,
+        at: (S, S),
+    ) -> S {
         match &self.constant {
             Some(constant) => {
                 trig1(&self.linear, at).square() - u.harmonic(constant, at).scale(self.lead)
             }
-            None => u.harmonic(whole, at),
+            None => whole.at(u),
         }
     }
 
@@ -164,7 +170,7 @@ pub(crate) enum Height<N: Float = f64> {
         /// k, B and C.
         along: Along<N>,
         /// Δ.
-        radicand: Trig2<N>,
+        radicand: CentredTrigonometric<N>,
         /// +1 or -1.
         sign: N,
     },
@@ -172,8 +178,8 @@ pub(crate) enum Height<N: Float = f64> {
     Deflated {
         /// k, B and C.
         along: Along<N>,
-        /// q, positive, of degree one.
-        rest: Trig1<N>,
+        /// q, of degree one, positive over the sweep.
+        rest: CentredTrigonometric<N>,
         /// The angle at which the curve crosses itself.
         node: Option<N>,
         /// +1 or -1.
@@ -287,7 +293,7 @@ impl<N: Float> QuadricCurve<N> {
                 node,
                 sign,
             } => {
-                let mut root = trig1(rest, at).root().scale(*sign);
+                let mut root = rest.at(u).root().scale(*sign);
                 if let Some(node) = node {
                     root = root * (u - S::constant(*node)).times(0.5).sin_cos().0;
                 }

@@ -6,6 +6,7 @@
 //! from the other surface.
 
 use super::{Rulings, apart, sampled_rulings};
+use crate::geometry::centred_trigonometric::CentredTrigonometric;
 use crate::geometry::curve::Curve;
 use crate::geometry::intersect::{Branch, IntersectionError, Node, SurfaceIntersection, place};
 use crate::geometry::quadric_curve::{Along, Height, QuadricCurve, Sweep};
@@ -195,10 +196,11 @@ impl<N: Float> Rulings<'_, N> {
     /// node one that goes around twice.
     fn branches_around(&self, node: Option<N>) -> Vec<QuarticBranch<N>> {
         let Some(node) = node else {
+            let radicand = CentredTrigonometric::new(&self.radicand).not_negative();
             let with_sign = |sign| {
                 let height = Height::Whole {
                     along: self.along(),
-                    radicand: self.radicand,
+                    radicand,
                     sign,
                 };
                 self.branch(Sweep::Round { turns: 1 }, height, Vec::new())
@@ -208,7 +210,7 @@ impl<N: Float> Rulings<'_, N> {
         let half = between(node, node).map(|k| -k);
         let height = Height::Deflated {
             along: self.along(),
-            rest: divide(&self.radicand, &half),
+            rest: CentredTrigonometric::linear(&divide(&self.radicand, &half)),
             node: Some(node),
             sign: N::ONE,
         };
@@ -236,7 +238,7 @@ impl<N: Float> Rulings<'_, N> {
         }
         let height = Height::Deflated {
             along: self.along(),
-            rest,
+            rest: CentredTrigonometric::linear(&rest),
             node,
             sign: N::ONE,
         };

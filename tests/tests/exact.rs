@@ -25,6 +25,10 @@ const MEANT: &[(&str, &str)] = &[
         "where the lip enters the other ball, points are 1.5e-12 apart",
     ),
     (
+        "cone-rim-a-billionth-into-a-ring",
+        "between the rim and the contact, the ring and the plane of the rim are 1e-18 apart",
+    ),
+    (
         "cone-tip-on-cone-along-tangent",
         "turned by an angle in decimals",
     ),

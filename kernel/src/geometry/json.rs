@@ -1,6 +1,6 @@
 //! Curves and surfaces as JSON: a type and exact parameters.
 
-use super::centred_trigonometric::CentredTrigonometric;
+use super::centred_trigonometric::{CentredTrigonometric, TrigonometricMinimum};
 use super::curve::Curve;
 use super::frame::Frame;
 use super::quadric_curve::{Height, QuadricCurve, Sweep};
@@ -124,14 +124,14 @@ fn quartic(q: &QuadricCurve) -> Value {
             radicand,
             sign,
         } => json!({"form": "whole", "lead": along.lead, "linear": along.linear,
-            "radicand": radicand.coefficients(), "sign": sign}),
+            "radicand": radicand.coefficients(), "minima": minima(radicand), "sign": sign}),
         Height::Deflated {
             along,
             rest,
             node,
             sign,
         } => {
-            json!({"form": "deflated", "lead": along.lead, "linear": along.linear, "rest": linear_coefficients(rest),
+            json!({"form": "deflated", "lead": along.lead, "linear": along.linear, "rest": linear_coefficients(rest), "minima": minima(rest),
             "node": node, "sign": sign})
         }
         Height::Rational { linear, constant } => {
@@ -142,6 +142,16 @@ fn quartic(q: &QuadricCurve) -> Value {
         }
     };
     json!({"type": "quartic", "base": base, "sweep": sweep, "height": height})
+}
+
+/// The minima of a polynomial. About one of them it is least + v (a + b sin τ + c v), where τ is the
+/// angle from it, v = 1 - cos τ, and a, b and c are the rise.
+fn minima(polynomial: &CentredTrigonometric) -> Vec<Value> {
+    let [first, second] = polynomial.minima;
+    let count = if first == second { 1 } else { 2 };
+    let minimum =
+        |m: &TrigonometricMinimum| json!({"angle": m.angle, "least": m.least, "rise": m.rise});
+    polynomial.minima[..count].iter().map(minimum).collect()
 }
 
 /// The coefficients of 1, cos u and sin u of a polynomial of degree one.

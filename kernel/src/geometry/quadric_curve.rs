@@ -136,21 +136,6 @@ impl<N: Float> Along<N> {
         }
     }
 
-    /// Δ; `whole` is the same as a polynomial.
-    fn radicand<S: Analytic<Float = N>>(
-        &self,
-        whole: &CentredTrigonometric<N>,
-        u: S,
-        at: (S, S),
-    ) -> S {
-        match &self.constant {
-            Some(constant) => {
-                trig1(&self.linear, at).square() - u.harmonic(constant, at).scale(self.lead)
-            }
-            None => whole.at(u),
-        }
-    }
-
     /// (-B + r)/k for a square root r of Δ, as (numerator, denominator). C/(-B - r) is equal and
     /// may be used instead.
     fn quotient<S: Analytic<Float = N>>(&self, root: S, at: (S, S)) -> (S, S) {
@@ -286,7 +271,7 @@ impl<N: Float> QuadricCurve<N> {
                 along,
                 radicand,
                 sign,
-            } => along.quotient(along.radicand(radicand, u, at).root().scale(*sign), at),
+            } => along.quotient(radicand.at(u).root().scale(*sign), at),
             Height::Deflated {
                 along,
                 rest,

@@ -127,4 +127,7 @@ impl Analytic for f64 {
     fn is_like(self, o: Self) -> bool {
         self * o > 0.0
     }
+    fn representative(self) -> Self {
+        self
+    }
 }

@@ -158,6 +158,8 @@ pub trait Analytic:
     }
     /// Whether it certainly has the same sign as `o`, so that their sum does not cancel.
     fn is_like(self, o: Self) -> bool;
+    /// A number that it stands for: the middle of an interval, the value of a jet.
+    fn representative(self) -> Self::Float;
 }
 
 /// A trigonometric polynomial of degree two: k0 + k1 cos + k2 sin + k3 cos 2u + k4 sin 2u.

@@ -369,4 +369,7 @@ impl<N: Float> Analytic for Interval<N> {
     fn is_like(self, o: Self) -> bool {
         (self * o).lo > N::ZERO
     }
+    fn representative(self) -> N {
+        self.mid()
+    }
 }

@@ -160,4 +160,7 @@ impl<S: JetScalar> Analytic for Jet<S> {
     fn is_like(self, o: Self) -> bool {
         self.v.is_like(o.v)
     }
+    fn representative(self) -> Self::Float {
+        self.v.representative()
+    }
 }

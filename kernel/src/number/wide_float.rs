@@ -77,6 +77,9 @@ macro_rules! wide_float {
             fn is_like(self, o: Self) -> bool {
                 self * o > Self::ZERO
             }
+            fn representative(self) -> Self {
+                self
+            }
         }
     };
 }

@@ -188,6 +188,15 @@ impl<N: Float> Rulings<'_, N> {
         QuarticBranch { curve, passes }
     }
 
+    /// Δ about its minima, where it is computed as B^2 - k C.
+    fn centred_radicand(&self) -> CentredTrigonometric<N> {
+        let value = |u: N| {
+            let at = u.sin_cos();
+            trig1(&self.linear, at).powi(2) - self.lead * harmonic(&self.constant, at)
+        };
+        CentredTrigonometric::new(&self.radicand, value).not_negative()
+    }
+
     fn along(&self) -> Along<N> {
         Along::new(self.lead, self.linear, self.constant)
     }
@@ -196,7 +205,7 @@ impl<N: Float> Rulings<'_, N> {
     /// node one that goes around twice.
     fn branches_around(&self, node: Option<N>) -> Vec<QuarticBranch<N>> {
         let Some(node) = node else {
-            let radicand = CentredTrigonometric::new(&self.radicand).not_negative();
+            let radicand = self.centred_radicand();
             let with_sign = |sign| {
                 let height = Height::Whole {
                     along: self.along(),

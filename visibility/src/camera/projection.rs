@@ -215,8 +215,7 @@ impl Projection {
     pub fn velocity_y_up(&self, p: &Point3<f64>, velocity: &Vector3<f64>) -> Vector2<f64> {
         let (h, d) = (self.homogeneous(p), self.homogeneous_vector(velocity));
         let moved = self.affine * ((d - h * (d.z / h.z)) / h.z);
-        let flip = if self.y_down { -1.0 } else { 1.0 };
-        Vector2::new(moved.x, moved.y * flip)
+        self.flipped(Point2::new(moved.x, moved.y)).coords
     }
 
     /// The line of sight through an image point with y up.

@@ -2,10 +2,10 @@
 
 mod arc_position;
 mod broad_phase;
+mod crossing_effect;
 mod intersect;
 mod intersect_general;
 pub(crate) mod overlap;
-mod passing;
 pub(crate) mod snap;
 
 use crate::contour_generator::contour_arc::{ArcJunction, Change, ContourArc, Split};
@@ -13,19 +13,26 @@ use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctio
 use crate::image_curve::{Image, flat_of};
 use crate::junction::arc_position::{ArcPosition, ArcSplit, CrossedArc, IndexedArc};
 use crate::junction::broad_phase::candidates;
+use crate::junction::crossing_effect::{change, is_turned_away};
 use crate::junction::intersect::{Overlap, cross, parameters_at};
-use crate::junction::passing::{change, is_turned_away};
 use crate::junction::snap::{Settled, nearest_turn, settle, split_at_touches};
 use crate::scene::Scene;
 use crate::scene::tolerance::IMAGE_TOLERANCE;
 use nalgebra::{Point3, Vector3};
 use premio_kernel::number::predicates::Compare;
+use std::collections::HashSet;
 
 /// Whether an arc passes a junction in the image at that junction and nowhere else: one of its own,
 /// and it is straight.
 fn passes_once(contour_arc: &ContourArc<'_>, id: u32) -> bool {
     matches!(contour_arc.image, Image::Line { .. })
         && contour_arc.junctions().any(|own| own.junction == id)
+}
+
+/// The index of the end of an arc that is nearest to a parameter.
+fn nearest_end(contour_arc: &ContourArc<'_>, t: f64) -> usize {
+    let [lo, hi] = contour_arc.range;
+    usize::from((t - lo).is_beyond(hi - t))
 }
 
 struct Search<'s, 'a, 'j, 'p> {
@@ -37,6 +44,8 @@ struct Search<'s, 'a, 'j, 'p> {
     processed: Vec<Vec<[f64; 2]>>,
     /// The passages behind junctions of other arcs.
     behind: Vec<Behind>,
+    /// The arcs that are cut at junctions in which others end, by their indices.
+    cut_at_ends: HashSet<(u32, u32)>,
 }
 
 /// A junction of a nearer arc that coincides with a point of a farther arc in the image.
@@ -63,6 +72,7 @@ pub fn find(contour_arcs: &mut [ContourArc<'_>], scene: &Scene<'_>, junctions: &
         splits: Vec::new(),
         processed: vec![Vec::new(); contour_arcs.len()],
         behind: Vec::new(),
+        cut_at_ends: HashSet::new(),
     };
     for (i, j) in pairs {
         search.pair(
@@ -251,8 +261,8 @@ impl Search<'_, '_, '_, '_> {
             let both = [first.moved_to(t.t), second.moved_to(s.t)];
             return match [t.at_end, s.at_end] {
                 [false, false] => self.meeting(both, &p),
-                [false, true] => self.passing(both[0], b, s),
-                [true, false] => self.passing(both[1], a, t),
+                [false, true] => self.cut_at_end(both[0], b, s),
+                [true, false] => self.cut_at_end(both[1], a, t),
                 [true, true] => {}
             };
         }
@@ -284,17 +294,17 @@ impl Search<'_, '_, '_, '_> {
         }));
     }
 
-    /// Cuts an arc that passes, in space, through the end of another: a limb through a corner of
-    /// its face. The faces at the corner end there.
-    fn passing(&mut self, position: ArcPosition<'_, '_>, other: &ContourArc<'_>, end: Settled) {
-        let [lo, hi] = other.range;
-        let nearest = usize::from((end.t - lo).is_beyond(hi - end.t));
-        let Some(junction) = other.ends[nearest] else {
+    /// Cuts an arc that passes, in space, through the end of another, such as a limb through a corner
+    /// of its face. At a turning point of the other there is nothing to cut.
+    fn cut_at_end(&mut self, position: ArcPosition<'_, '_>, other: &ContourArc<'_>, end: Settled) {
+        let nearest = nearest_end(other, end.t);
+        let curve = other.curve;
+        let away = (curve.point(other.range[nearest]) - curve.point(end.t)).norm();
+        let near = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
+        let Some(junction) = other.ends[nearest].filter(|_| away.is_within(near)) else {
             return;
         };
-        let is_known =
-            |known: &ArcSplit| known.index == position.index && known.split.junction == junction;
-        if self.splits.iter().any(is_known) {
+        if !self.cut_at_ends.insert((position.index, junction)) {
             return;
         }
         let contours = &mut self.junctions.list[junction as usize].contours;
@@ -331,9 +341,8 @@ impl Search<'_, '_, '_, '_> {
         if !at.at_end {
             return;
         }
-        let [lo, hi] = contour_arc.range;
         let p = contour_arc.curve.point(at.t);
-        let nearest = usize::from((at.t - lo).is_beyond(hi - at.t));
+        let nearest = nearest_end(contour_arc, at.t);
         for (k, (id, t)) in contour_arc.ends.iter().zip(contour_arc.range).enumerate() {
             let near = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
             let passed =

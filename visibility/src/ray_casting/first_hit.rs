@@ -25,8 +25,7 @@ pub struct FirstHit {
 /// Where a line of sight crosses the surface of a face.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
-    at: f64,
-    touches: bool,
+    hit: LineHit,
     face: FaceId,
 }
 
@@ -45,13 +44,13 @@ impl Scene<'_> {
         let ray = self.ray(&(eye + into * beyond));
         let mut crossings = self.crossings(&ray, &|_| OriginIncidence::No);
         // The nearest to the eye first, so that the others need not be located.
-        crossings.sort_by(|a, b| b.at.total_cmp(&a.at));
+        crossings.sort_by(|a, b| b.hit.at.total_cmp(&a.hit.at));
         crossings.iter().find_map(|crossing| {
-            let p = ray.origin + ray.towards * crossing.at;
-            let seen = self.locator.place(crossing.face, &p) != PointLocation::Outside;
+            let Crossing { hit, face } = crossing;
+            let seen = self.place_of_hit(&ray, *face, hit) != PointLocation::Outside;
             seen.then_some(FirstHit {
-                face: crossing.face,
-                point: p,
+                face: *face,
+                point: ray.origin + ray.towards * hit.at,
             })
         })
     }
@@ -60,12 +59,14 @@ impl Scene<'_> {
     /// the point. The line of sight leaves an occluding face through its front.
     pub fn is_hidden(&self, p: &Point3<f64>, own: &impl Fn(FaceId) -> OriginIncidence) -> bool {
         let ray = self.ray(p);
-        self.crossings(&ray, own).iter().any(|crossing| {
-            let q = ray.origin + ray.towards * crossing.at;
-            !crossing.touches
-                && self.is_turned(crossing.face, &q, &ray.towards)
-                && self.locator.place(crossing.face, &q) != PointLocation::Outside
-        })
+        self.crossings(&ray, own)
+            .iter()
+            .any(|Crossing { hit, face }| {
+                let q = ray.origin + ray.towards * hit.at;
+                !hit.touches
+                    && self.is_turned(*face, &q, &ray.towards)
+                    && self.locator.place(*face, &q) != PointLocation::Outside
+            })
     }
 
     /// The crossings of a line of sight with the surfaces of faces whose boxes it intersects,
@@ -80,11 +81,10 @@ impl Scene<'_> {
             let own = own(face);
             let least = self.least(own);
             let found = self.line_hits(ray, self.brep.surface(face), own);
-            for &LineHit { at, touches } in found.as_slice() {
-                if at.is_beyond(least) && at.is_short_of(ray.length) {
-                    crossings.push(Crossing { at, touches, face });
-                }
-            }
+            let is_between =
+                |hit: &&LineHit| hit.at.is_beyond(least) && hit.at.is_short_of(ray.length);
+            let between = found.as_slice().iter().filter(is_between);
+            crossings.extend(between.map(|&hit| Crossing { hit, face }));
         }
         crossings
     }

@@ -4,8 +4,10 @@ use crate::image_curve::polynomial::{QuarticPolynomial, clear_roots};
 use crate::ray_casting::{OriginIncidence, SightLine};
 use crate::scene::Scene;
 use nalgebra::Vector3;
+use premio_kernel::geometry::ellipsoid::Ellipsoid;
+use premio_kernel::geometry::elliptic_surface::{EllipticCone, EllipticCylinder};
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::{Surface, Torus};
+use premio_kernel::geometry::surface::{Cone, Cylinder, Sphere, Surface, Torus};
 use premio_kernel::number::bisection::ValueAndSlope;
 use premio_kernel::number::float::Analytic;
 use premio_kernel::number::interval::Interval;
@@ -20,6 +22,15 @@ pub(crate) struct LineHit {
     pub(crate) at: f64,
     /// Whether the line only touches the surface.
     pub(crate) touches: bool,
+}
+
+/// The line q + t w in the frame of a surface.
+#[derive(Clone, Copy, Debug)]
+struct LocalLine {
+    q: Vector3<f64>,
+    w: Vector3<f64>,
+    /// How it intersects the surface at q.
+    own: OriginIncidence,
 }
 
 /// Up to four intersections of a line and a surface.
@@ -67,22 +78,12 @@ impl Scene<'_> {
         let f = surface.frame();
         let q = f.coordinates(&ray.origin);
         let w = f.components(&ray.towards);
+        let line = LocalLine { q, w, own };
         match surface {
             Surface::Plane(_) => {
                 if own == OriginIncidence::No && !self.edge_on(&f.origin, &f.z) {
                     found.push(-q.z / w.z, false);
                 }
-            }
-            Surface::Cylinder(s) => {
-                let a = w.x * w.x + w.y * w.y;
-                let b = q.x * w.x + q.y * w.y;
-                let c = (q.x.hypot(q.y) - s.radius) * (q.x.hypot(q.y) + s.radius);
-                self.quadric([a, b, c], own, |_| 2.0 * s.radius, &mut found);
-            }
-            Surface::Sphere(s) => {
-                let b = q.dot(&w);
-                let c = (q.norm() - s.radius) * (q.norm() + s.radius);
-                self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, &mut found);
             }
             // A line through the apex has a double root, whatever its direction.
             Surface::Cone(_) | Surface::EllipticCone(_)
@@ -90,43 +91,76 @@ impl Scene<'_> {
             {
                 found.push(-q.dot(&w), true);
             }
-            Surface::Cone(s) => {
-                let (k, m) = (s.cos * s.cos, s.sin * s.sin);
-                let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
-                let b = k * (q.x * w.x + q.y * w.y) - m * q.z * w.z;
-                let rho = q.x.hypot(q.y);
-                let c = (s.cos * rho - s.sin * q.z) * (s.cos * rho + s.sin * q.z);
-                let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
-                let mut both = LineHits::default();
-                self.quadric([a, b, c], own, gradient, &mut both);
-                found.push_on_nappe(&both, &q, &w);
-            }
-            Surface::EllipticCylinder(s) => {
-                let rho = (q.x / s.radii[0]).hypot(q.y / s.radii[1]);
-                let c = (rho - 1.0) * (rho + 1.0);
-                let [a, b] = [&w, &q].map(|v| s.gradient(v).dot(&w));
-                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
-                self.quadric([a, b, c], own, gradient, &mut found);
-            }
-            Surface::EllipticCone(s) => {
-                let rho = (q.x / s.slopes[0]).hypot(q.y / s.slopes[1]);
-                let c = (rho - q.z) * (rho + q.z);
-                let [a, b] = [&w, &q].map(|v| s.gradient(v).dot(&w));
-                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
-                let mut both = LineHits::default();
-                self.quadric([a, b, c], own, gradient, &mut both);
-                found.push_on_nappe(&both, &q, &w);
-            }
-            Surface::Ellipsoid(s) => {
-                let [origin, towards] = [&q, &w].map(|v| s.on_unit_sphere(v));
-                let (away, a) = (origin.norm(), towards.norm_squared());
-                let (b, c) = (origin.dot(&towards), (away - 1.0) * (away + 1.0));
-                let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
-                self.quadric([a, b, c], own, gradient, &mut found);
-            }
-            Surface::Torus(s) => self.torus(s, &q, &w, own, ray.length, &mut found),
+            Surface::Cylinder(s) => self.cylinder(s, &line, &mut found),
+            Surface::Sphere(s) => self.sphere(s, &line, &mut found),
+            Surface::Cone(s) => self.cone(s, &line, &mut found),
+            Surface::EllipticCylinder(s) => self.elliptic_cylinder(s, &line, &mut found),
+            Surface::EllipticCone(s) => self.elliptic_cone(s, &line, &mut found),
+            Surface::Ellipsoid(s) => self.ellipsoid(s, &line, &mut found),
+            Surface::Torus(s) => self.torus(s, &line, ray.length, &mut found),
         }
         found
+    }
+
+    fn cylinder(&self, s: &Cylinder, &LocalLine { q, w, own }: &LocalLine, found: &mut LineHits) {
+        let a = w.x * w.x + w.y * w.y;
+        let b = q.x * w.x + q.y * w.y;
+        let c = (q.x.hypot(q.y) - s.radius) * (q.x.hypot(q.y) + s.radius);
+        self.quadric([a, b, c], own, |_| 2.0 * s.radius, found);
+    }
+
+    fn sphere(&self, s: &Sphere, &LocalLine { q, w, own }: &LocalLine, found: &mut LineHits) {
+        let b = q.dot(&w);
+        let c = (q.norm() - s.radius) * (q.norm() + s.radius);
+        self.quadric([1.0, b, c], own, |_| 2.0 * s.radius, found);
+    }
+
+    fn cone(&self, s: &Cone, &LocalLine { q, w, own }: &LocalLine, found: &mut LineHits) {
+        let (k, m) = (s.cos * s.cos, s.sin * s.sin);
+        let a = k * (w.x * w.x + w.y * w.y) - m * w.z * w.z;
+        let b = k * (q.x * w.x + q.y * w.y) - m * q.z * w.z;
+        let rho = q.x.hypot(q.y);
+        let c = (s.cos * rho - s.sin * q.z) * (s.cos * rho + s.sin * q.z);
+        let gradient = |t: f64| 2.0 * s.sin * (q.z + t * w.z).abs();
+        let mut both = LineHits::default();
+        self.quadric([a, b, c], own, gradient, &mut both);
+        found.push_on_nappe(&both, &q, &w);
+    }
+
+    fn elliptic_cylinder(
+        &self,
+        s: &EllipticCylinder,
+        &LocalLine { q, w, own }: &LocalLine,
+        found: &mut LineHits,
+    ) {
+        let rho = (q.x / s.radii[0]).hypot(q.y / s.radii[1]);
+        let c = (rho - 1.0) * (rho + 1.0);
+        let [a, b] = [w, q].map(|v| s.gradient(&v).dot(&w));
+        let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+        self.quadric([a, b, c], own, gradient, found);
+    }
+
+    fn elliptic_cone(
+        &self,
+        s: &EllipticCone,
+        &LocalLine { q, w, own }: &LocalLine,
+        found: &mut LineHits,
+    ) {
+        let rho = (q.x / s.slopes[0]).hypot(q.y / s.slopes[1]);
+        let c = (rho - q.z) * (rho + q.z);
+        let [a, b] = [w, q].map(|v| s.gradient(&v).dot(&w));
+        let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+        let mut both = LineHits::default();
+        self.quadric([a, b, c], own, gradient, &mut both);
+        found.push_on_nappe(&both, &q, &w);
+    }
+
+    fn ellipsoid(&self, s: &Ellipsoid, &LocalLine { q, w, own }: &LocalLine, found: &mut LineHits) {
+        let [origin, towards] = [q, w].map(|v| s.on_unit_sphere(&v));
+        let (away, a) = (origin.norm(), towards.norm_squared());
+        let (b, c) = (origin.dot(&towards), (away - 1.0) * (away + 1.0));
+        let gradient = |t: f64| 2.0 * s.gradient(&(q + w * t)).norm();
+        self.quadric([a, b, c], own, gradient, found);
     }
 
     /// Whether a line passes through the origin of its frame.
@@ -174,9 +208,7 @@ impl Scene<'_> {
     fn torus(
         &self,
         s: &Torus,
-        q: &Vector3<f64>,
-        w: &Vector3<f64>,
-        own: OriginIncidence,
+        LocalLine { q, w, own }: &LocalLine,
         length: f64,
         found: &mut LineHits,
     ) {

@@ -219,7 +219,8 @@ impl Scene<'_> {
         let surface = self.brep.surface(face);
         let hits = self.line_hits(ray, surface, own);
         let least = self.least(own);
-        for &LineHit { at: s, touches } in hits.as_slice() {
+        for hit in hits.as_slice() {
+            let &LineHit { at: s, touches } = hit;
             let p = ray.origin + ray.towards * s;
             if query == FaceQuery::Hiding && s.abs().is_short_of(least) {
                 // Where another face touches this one, this one may hide points next to the origin.
@@ -241,8 +242,7 @@ impl Scene<'_> {
             let place = match query {
                 FaceQuery::Hiding if !front && !locator.on_boundary(&p) => continue,
                 FaceQuery::Hiding if !front => PointLocation::On,
-                _ if touches && self.touches_face(ray, face, s) => PointLocation::On,
-                _ => locator.place(&p),
+                _ => self.place_of_hit(ray, face, hit),
             };
             if place == PointLocation::Outside {
                 continue;
@@ -256,18 +256,31 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether a line that touches the surface of a face at a distance `s` touches the face, at
-    /// either end of the length over which it is within the tolerance.
-    fn touches_face(&self, ray: &SightLine, face: FaceId, s: f64) -> bool {
-        let surface = self.brep.surface(face);
-        let p = ray.origin + ray.towards * s;
-        let bend = surface.normal_curvature(&p, &ray.towards).abs();
-        let half = (2.0 * TOUCHING * self.resolution / bend).sqrt();
-        let reaches = |s: f64| {
-            let q = ray.origin + ray.towards * s;
-            self.locator.place(face, &q) != PointLocation::Outside
+    /// Where the hit of a line on the surface of a face lies. A line that touches the surface is
+    /// within the tolerance of it over a length, of which only an end may lie in the face.
+    pub(crate) fn place_of_hit(
+        &self,
+        ray: &SightLine,
+        face: FaceId,
+        &LineHit { at, touches }: &LineHit,
+    ) -> PointLocation {
+        let place = |s: f64| {
+            let p = ray.origin + ray.towards * s;
+            self.locator.place(face, &p)
         };
-        half.is_finite() && (reaches(s - half) || reaches(s + half))
+        let middle = place(at);
+        if !touches || middle != PointLocation::Outside {
+            return middle;
+        }
+        let p = ray.origin + ray.towards * at;
+        let bend = self.brep.surface(face).normal_curvature(&p, &ray.towards);
+        let half = (2.0 * TOUCHING * self.resolution / bend.abs()).sqrt();
+        let mut ends = [at - half, at + half].into_iter();
+        let is_on_face = |s: f64| s.is_finite() && place(s) != PointLocation::Outside;
+        match ends.any(is_on_face) {
+            true => PointLocation::On,
+            false => PointLocation::Outside,
+        }
     }
 
     /// Whether a face is turned towards the eye at a point of it.
@@ -463,15 +476,15 @@ impl Scene<'_> {
                 .all(|other| other.is_exactly(hit.at) || (s - other).abs().is_beyond(away))
         };
         let found = self.line_hits(&parallel, surface, OriginIncidence::No);
-        for &LineHit { at: s, touches } in found.as_slice() {
+        for found in found.as_slice() {
+            let &LineHit { at: s, touches } = found;
             let at = s - back + hit.at;
             // Faces behind the point do not hide it.
             if at.is_at_most(0.0) || !known(at) {
                 continue;
             }
             let p = parallel.origin + towards * s;
-            let is_on_face = self.locator.place(hit.face, &p) != PointLocation::Outside;
-            if is_on_face || (touches && self.touches_face(&parallel, hit.face, s)) {
+            if self.place_of_hit(&parallel, hit.face, found) != PointLocation::Outside {
                 let front = touches || self.is_turned(hit.face, &p, &towards);
                 report(at, front);
             }

@@ -6,6 +6,7 @@ mod fixture;
 mod images;
 mod mesh;
 mod outlines;
+mod piece_ends;
 mod recount;
 mod shadow;
 mod sheets;
@@ -15,6 +16,7 @@ pub mod views;
 mod window;
 
 pub(crate) use outlines::Outlines;
+use piece_ends::displaced_ends;
 pub(crate) use recount::Recount;
 pub(crate) use shadow::ShadowOutline;
 pub(crate) use sheets::SheetReport;
@@ -295,11 +297,15 @@ impl<'a> Checker<'a> {
         let clearance = self.clearance();
         let counted = Recount::telling(&self.material, seen, &clearance);
         let outlines = Outlines::new(&self.material, seen, &clearance);
+        let (finding, detail) = match displaced_ends(seen, &clearance).first() {
+            Some(displaced) => (Finding::Fails, displaced.to_string()),
+            None => (counted.finding(), counted.to_string()),
+        };
         [
             Check {
                 subject: CheckSubject::View(name.to_owned()),
-                finding: counted.finding(),
-                detail: counted.to_string(),
+                finding,
+                detail,
             },
             Check {
                 subject: CheckSubject::Contours(name.to_owned()),

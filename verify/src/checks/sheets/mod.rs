@@ -369,7 +369,7 @@ impl fmt::Display for SheetFault {
                 contour,
                 piece,
             } => at(
-                &format!("contour {contour} piece {piece} that is not drawn"),
+                &format!("piece {piece} of contour {contour} is not drawn"),
                 place,
             ),
             Self::Twice(p) => at("two strokes on one another", p),

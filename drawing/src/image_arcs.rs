@@ -228,9 +228,9 @@ impl Refinement<'_> {
         self.refine([middle, b], depth + 1, out);
     }
 
-    /// How far the image between two samples folds back beyond one of them: by the control points
-    /// of the cubic with the same ends and tangents. The samples between them need not see the
-    /// fold.
+    /// The distance of the control points of the Hermite cubic between two samples beyond the ends
+    /// of the chord, an upper bound of how far the cubic folds back. A fold may lie between two of
+    /// the inner samples.
     fn overshoot(&self, a: &Sample, b: &Sample) -> f64 {
         let chord = b.point - a.point;
         let third = (b.t - a.t) / 3.0;

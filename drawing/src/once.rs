@@ -147,6 +147,9 @@ fn may_share(arc: &ImageArc<'_>, other: &ImageArc<'_>) -> bool {
 /// The ranges of an arc over which none of the others runs.
 fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Vec<[f64; 2]> {
     let [lo, hi] = arc.range();
+    if others.is_empty() {
+        return vec![[lo, hi]];
+    }
     let ends = others.iter().flat_map(|other| other.ends());
     let on_arc = ends.filter_map(|p| arc.nearest_within(&p, tolerance));
     let mut stops: Vec<f64> = on_arc.map(|at| at.t).chain([lo, hi]).collect();

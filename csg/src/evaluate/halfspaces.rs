@@ -111,7 +111,8 @@ impl<N: Float> Solid<N> {
         self.sides.iter().enumerate().skip(walls)
     }
 
-    /// The signed distance of a point, up to a limit beyond which it has the right sign only.
+    /// The signed distance of a point, or a lower bound of it with the right sign: to a limit, and
+    /// where walls are slanted.
     pub fn level(&self, p: &Point3<N>, limit: N) -> N {
         let ends = self.half_spaces().map(|(_, side)| side.surface.distance(p));
         let ends = match self.ends {

@@ -50,7 +50,8 @@ impl<N: Float> WalledRegion<N> {
         }
     }
 
-    /// The signed distance of the closest wall up to a limit; beyond it, the limit with the sign.
+    /// The signed distance of the closest wall, or a lower bound of it with the right sign: to a
+    /// limit, and where walls are slanted.
     pub fn level(&self, p: &Point3<N>, limit: N) -> N {
         match self {
             Self::Section(section) => section.level(p, limit),

@@ -79,8 +79,9 @@ pub(super) struct Section<N: Float> {
     /// The number of walls, which are the first sides of the primitive.
     pub walls: usize,
     slabs: Slabs,
-    /// The least cosine of a wall's angle from the axis of a prism; 1 for a revolution. A distance
-    /// from a wall is at least this fraction of the distance in a plane across the axis.
+    /// A lower bound of the cosines of the angles between walls and the axis of a prism; 1 for a
+    /// revolution. A distance from a wall is at least this fraction of the distance in a plane
+    /// across the axis.
     least_cosine: N,
 }
 

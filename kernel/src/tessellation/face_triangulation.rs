@@ -2,6 +2,7 @@
 //! constraints.
 
 mod extra_points;
+mod spread_order;
 
 use super::Accuracy;
 use super::charts::{Cap, Chart, Seams, signed_turn};
@@ -15,6 +16,7 @@ use crate::number::bisection::bisect;
 use nalgebra::Point2;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
+use spread_order::spread;
 use std::f64::consts::TAU;
 
 /// A chord of an edge, from the node with this index to the next.
@@ -113,8 +115,18 @@ impl FaceTriangulation {
             chart,
             accuracy: &accuracy.part(0.5),
         };
+        let runs = runs(brep, face);
+        let is_long = |run: &EdgeRun| lines.nodes(run.edge).len() > MANY_NODES;
+        let has_long_edge = runs.iter().any(is_long);
         let mut builder = Builder::new(brep, face, fit, lines);
-        for EdgeRun { edge, sense } in runs(brep, face) {
+        if has_long_edge {
+            builder.add_first_corners(&runs);
+            if builder.domain.net.num_inner_faces() == 0 {
+                // Nothing can be triangulated before more nodes leave the line.
+                return Err(builder.halves(&runs));
+            }
+        }
+        for EdgeRun { edge, sense } in runs {
             builder.add(edge, sense);
         }
         builder.finish()
@@ -135,16 +147,6 @@ fn runs(brep: &Brep, face: FaceId) -> Vec<EdgeRun> {
 /// The number of nodes from which the corners of an edge are inserted in a spread order. Along a
 /// circle, each point in order would flip all triangles of the points before it.
 const MANY_NODES: usize = 1 << 11;
-
-/// The numbers below `count` by their reversed bits: an order in which each is far from those just
-/// before.
-fn spread(count: usize) -> impl Iterator<Item = usize> {
-    let bits = usize::BITS - count.leading_zeros();
-    let reversed = move |k: usize| k.reverse_bits() >> (usize::BITS - bits);
-    (0..1usize << bits)
-        .map(reversed)
-        .filter(move |&k| k < count)
-}
 
 /// The distance from a seam, in radians, within which an angle is on it.
 const ON_SEAM: f64 = 1.0 / (1u64 << 36) as f64;
@@ -242,6 +244,35 @@ impl<'a> Builder<'a> {
             }
             self.domain.bounding.insert(side);
             self.constrain(from, to, chord);
+        }
+    }
+
+    /// The divisions of all chords into halves.
+    fn halves(&self, runs: &[EdgeRun]) -> Vec<Division> {
+        let of = |run: &EdgeRun| {
+            let edge = run.edge;
+            let chords = self.lines.nodes(edge).windows(2);
+            let half = move |chord: &[Node]| 0.5 * (chord[0].t + chord[1].t);
+            chords.map(move |chord| Division {
+                edge,
+                t: half(chord),
+            })
+        };
+        runs.iter().flat_map(of).collect()
+    }
+
+    /// Adds corners at the start and in the middle of every edge. While all corners are on one line,
+    /// as those of a straight edge are, each new one costs as much as all before it together.
+    fn add_first_corners(&mut self, runs: &[EdgeRun]) {
+        for &EdgeRun { edge, .. } in runs {
+            let nodes = self.lines.nodes(edge).to_vec();
+            let chords = [0, (nodes.len() - 1) / 2];
+            for pair in chords.into_iter().filter_map(|k| nodes.windows(2).nth(k)) {
+                let pair = [pair[0], pair[1]];
+                for (at, node) in self.places(edge, pair).into_iter().zip(pair) {
+                    self.corner(at, node.point);
+                }
+            }
         }
     }
 
@@ -559,22 +590,4 @@ fn continued_from(seams: &Seams, mut at: Point2<f64>, from: &Point2<f64>) -> Poi
         }
     }
     at
-}
-
-#[cfg(test)]
-mod tests {
-    use super::spread;
-
-    #[test]
-    fn a_spread_order_has_every_number_once_and_its_neighbour_before_it() {
-        for count in [1, 2, 3, 10, 64, 1000] {
-            let order: Vec<usize> = spread(count).collect();
-            let mut sorted = order.clone();
-            sorted.sort_unstable();
-            assert_eq!(sorted, (0..count).collect::<Vec<_>>());
-            for (k, number) in order.iter().enumerate().skip(1) {
-                assert!(order[..k].contains(&(number & (number - 1))));
-            }
-        }
-    }
 }

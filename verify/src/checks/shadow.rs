@@ -81,16 +81,6 @@ impl Shadow<'_> {
         let hit = self.material.intervals(&ray, least);
         hit.iter().any(|[_, hi]| *hi > near)
     }
-
-    /// How far material thinner than rounding continues beyond a crossing, if it thins at a
-    /// constant angle; no farther than from the thick material to there.
-    fn rest(&self, thick: &Point2<f64>, none: &Point2<f64>) -> f64 {
-        let thinned = self.sliver - self.rounding;
-        match thinned > self.rounding {
-            true => (none - thick).norm() * self.rounding / thinned,
-            false => 0.0,
-        }
-    }
 }
 
 impl ShadowOutline {
@@ -125,7 +115,7 @@ impl ShadowOutline {
                     continue;
                 };
                 let place = nalgebra::center(&thick, &none);
-                let near = tolerance.image + (none - place).norm() + shadow.rest(&thick, &none);
+                let near = tolerance.image + (none - place).norm();
                 let mut passing = strokes.passing(&place, near);
                 match passing.any(|(_, stroke)| is_outline(stroke)) {
                     true => outline.drawn += 1,
@@ -221,10 +211,8 @@ impl fmt::Display for ShadowOutline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::checks::fixture::{FrontView, front_view, tree};
-    use nalgebra::{Point3, Vector3};
+    use crate::checks::fixture::{FrontView, front_view};
     use premio_drawing::Layer;
-    use premio_visibility::ViewCamera;
 
     /// A dome on its cylinder from the front, with the strokes that are kept.
     fn outline(keeps: impl Fn(Layer, usize) -> bool) -> ShadowOutline {
@@ -282,30 +270,6 @@ mod tests {
             }
         }
         assert!(crossings >= 400, "{crossings}");
-    }
-
-    /// Material between two planes at an angle of 4e-9, which meet at x = 0. It is as thick as a
-    /// sliver at x = 0.025, and rays see none of it next to the outline.
-    #[test]
-    fn a_thin_wedge_ends_at_its_edge() {
-        let text = "P = (BLO(X=8, Y=9, Z=1) AT (MOVZ=-1) DIF BLO(X=20, Y=20, Z=5)
-            AT (MOVX=-10, MOVY=-5, MOVZ=-5, ROTY=0.00000022918311805))";
-        let (above, origin) = (Point3::new(0.0, 0.0, 9.0), Point3::origin());
-        let camera = ViewCamera::orthographic(above, origin, Vector3::y()).unwrap();
-        let size = 12.0;
-        let shadow = Shadow {
-            material: &RayOracle::new(&tree(text)),
-            projection: &Projection::new(&camera, size),
-            sliver: 1e-10,
-            rounding: ROUNDINGS * ROUNDING * size,
-        };
-        let course = |t: f64| Point2::new(2.0 * t - 1.0, 4.5);
-        let all = shadow.crossings(&course, 17);
-        assert_eq!(all.len(), 1);
-        let none = all[0].none.unwrap();
-        assert!((all[0].thick.x - 0.025).abs() < 1e-3, "{}", all[0].thick);
-        let rest = shadow.rest(&all[0].thick, &none);
-        assert!(none.x > 0.5 * rest && none.x < 2.0 * rest, "{none} {rest}");
     }
 
     #[test]

@@ -129,11 +129,8 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
         }
     }
     measured.volume = volume;
-    // Over the entire surface, curves of the file may deviate by its accuracy, and those of the
-    // boundary by the resolution. A part that is far smaller than its primitives has a resolution
-    // of about that accuracy. Quadrature has a limited precision.
-    let deviation = known.accuracy + known.resolution;
-    let allowed = known.area * deviation + known.size.powi(3) * QUADRATURE;
+    // Curves may deviate over the entire surface, and quadrature has a limited precision.
+    let allowed = known.area * known.accuracy + known.size.powi(3) * QUADRATURE;
     if let Some(volume) = volume
         && (volume - known.volume).abs() > allowed
     {

@@ -52,8 +52,8 @@ pub fn threads() -> usize {
     THREADS.get().map_or_else(cores, usize::from)
 }
 
-/// The results of `work` on every item, in order. At most one thread runs for each `grain` items; the work on
-/// an item starts no other thread where there are several.
+/// The results of `work` on every item, in order. At most one thread runs for each `grain` items; the
+/// work on an item starts no other thread where there are several.
 ///
 /// # Panics
 /// `work` panics.

@@ -21,6 +21,15 @@ pub(crate) struct TrigonometricMinimum<N: Float = f64> {
     pub rise: [N; 3],
 }
 
+/// A complex angle, or its conjugate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ComplexAngle<N: Float = f64> {
+    /// The real part.
+    pub real: N,
+    /// The imaginary part, not negative.
+    pub imaginary: N,
+}
+
 /// A trigonometric polynomial of degree two, or less, about its minima.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CentredTrigonometric<N: Float = f64> {
@@ -48,6 +57,13 @@ impl<N: Float> TrigonometricMinimum<N> {
     fn away(&self, u: N) -> N {
         let turn = (u - self.angle).rem_euclid(N::TAU);
         turn.min(N::TAU - turn)
+    }
+
+    /// Whether the value has doubled at a distance on either side.
+    fn doubles_within(&self, distance: N) -> bool {
+        let doubled = N::TWO * self.least;
+        let sides = [self.angle - distance, self.angle + distance];
+        sides.into_iter().any(|u| self.at(u) >= doubled)
     }
 
     fn at<S: Analytic<Float = N>>(&self, u: S) -> S {
@@ -116,6 +132,31 @@ impl<N: Float> CentredTrigonometric<N> {
             second.away(u) < first.away(u)
         };
         if is_second { second } else { first }.at(u)
+    }
+
+    /// The minima within `distance` of which the value doubles.
+    pub(crate) fn narrow_minima(&self, distance: N) -> impl Iterator<Item = N> {
+        let [first, second] = &self.minima;
+        let count = if first.angle == second.angle { 1 } else { 2 };
+        let minima = self.minima.iter().take(count);
+        let narrow = minima.filter(move |minimum| minimum.doubles_within(distance));
+        narrow.map(|minimum| minimum.angle)
+    }
+
+    /// The two zeros of a polynomial of degree one.
+    pub(crate) fn complex_zeros(&self) -> [ComplexAngle<N>; 2] {
+        let TrigonometricMinimum { angle, least, rise } = self.minima[0];
+        let cos = N::ONE + least / rise[0];
+        match least > N::ZERO {
+            true => [cos.acosh(); 2].map(|imaginary| ComplexAngle {
+                real: angle,
+                imaginary,
+            }),
+            false => [N::ONE, -N::ONE].map(|side| ComplexAngle {
+                real: angle + side * cos.max(-N::ONE).acos(),
+                imaginary: N::ZERO,
+            }),
+        }
     }
 
     /// The coefficients of 1, cos u, sin u, cos 2u and sin 2u.

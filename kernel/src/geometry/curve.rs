@@ -300,7 +300,8 @@ impl<N: Float> Curve<N> {
         (dd - d * (d.dot(&dd) / speed2)) / speed2
     }
 
-    /// The ends of the smooth pieces of the range [lo, hi], including both ends of the range.
+    /// The ends of the smooth pieces of the range [lo, hi], including both ends of the range. A curve
+    /// that turns within a short range is divided there: samples on one side do not show the other.
     pub fn breaks(&self, lo: N, hi: N) -> Vec<N> {
         let mut breaks = vec![lo];
         match self {
@@ -321,6 +322,16 @@ impl<N: Float> Curve<N> {
                 }
             }
             _ => {}
+        }
+        if let (Self::Quartic(curve), Some(period)) = (self, self.period()) {
+            let at = curve.near_nodes().into_iter();
+            let within = at.flat_map(|t| {
+                let first = lo + (t - lo).rem_euclid(period);
+                [first, first + period]
+            });
+            breaks.extend(within.filter(|t| lo < *t && *t < hi));
+            breaks.sort_by(N::total_cmp);
+            breaks.dedup();
         }
         breaks.push(hi);
         breaks

@@ -8,7 +8,7 @@
 //! between two simple roots u = mid - half cos t, and √Δ changes sign with sin t. At a double root
 //! √Δ changes sign. After Levin (1976) and Dupont, Lazard, Lazard, Petitjean (2008).
 
-use super::centred_trigonometric::CentredTrigonometric;
+use super::centred_trigonometric::{CentredTrigonometric, ComplexAngle};
 use super::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use super::frame::Frame;
 use super::surface::{Cone, Cylinder, Surface};
@@ -264,6 +264,39 @@ impl<N: Float> QuadricCurve<N> {
         !zeros.is_empty() && zeros.iter().all(near)
     }
 
+    /// The parameters within one period next to which the curve turns within a short range, as it
+    /// passes a point where it would cross itself.
+    pub(super) fn near_nodes(&self) -> Vec<N> {
+        match &self.height {
+            Height::Whole { radicand, .. } => radicand
+                .narrow_minima(N::from_f64(SHORT_RANGE))
+                .flat_map(|u| self.parameters_of(u))
+                .collect(),
+            Height::Deflated { rest, .. } => rest
+                .complex_zeros()
+                .into_iter()
+                .filter(|zero| self.is_close(zero))
+                .flat_map(|zero| self.parameters_of(zero.real))
+                .collect(),
+            Height::Rational { .. } | Height::Cubic { .. } => Vec::new(),
+        }
+    }
+
+    /// Whether the parameter of a complex angle is close to a real one.
+    fn is_close(&self, angle: &ComplexAngle<N>) -> bool {
+        let range = N::from_f64(SHORT_RANGE);
+        match self.sweep {
+            Sweep::Round { .. } => angle.imaginary <= range,
+            Sweep::Oval { mid, half } => {
+                // The imaginary part of arccos z is arcosh of the mean distance of z from ±1.
+                let away = (angle.real - mid + N::PI).rem_euclid(N::TAU) - N::PI;
+                let [x, y] = [away / half, angle.imaginary / half];
+                let mean = N::HALF * ((x - N::ONE).hypot(y) + (x + N::ONE).hypot(y));
+                mean - N::ONE <= N::HALF * range.square()
+            }
+        }
+    }
+
     /// The height w as (numerator, denominator).
     fn quotient<S: Analytic<Float = N>>(&self, t: S, u: S, at: (S, S)) -> (S, S) {
         match &self.height {
@@ -331,10 +364,91 @@ impl<N: Float> QuadricCurve<N> {
 /// Zeros closer than this, in radians, are one double zero.
 const DOUBLE: f64 = 1.0 / (1 << 20) as f64;
 
+/// The length of a range of the parameter, in radians, that is short against a quarter turn.
+const SHORT_RANGE: f64 = 1.0 / 4.0;
+
 /// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.
 fn oval_factor<N: Float, S: Analytic<Float = N>>(t: S, half: N) -> S {
     let (s, c) = t.times(0.5).sin_cos();
     let a = s.square().scale(half).sinc();
     let b = c.square().scale(half).sinc();
     (s * c).scale(half) * (a * b).root()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::curve::Curve;
+    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    fn on_cylinder(sweep: Sweep, height: Height) -> QuadricCurve {
+        let frame = Frame::about(Point3::origin(), nalgebra::Vector3::z());
+        let base = Ruled::Cylinder(Cylinder { frame, radius: 1.0 });
+        QuadricCurve {
+            base,
+            sweep,
+            height,
+        }
+    }
+
+    fn along() -> Along {
+        Along {
+            lead: 1.0,
+            linear: [0.0; 3],
+            constant: None,
+        }
+    }
+
+    /// A cylinder along x about one of radius 1 along z: Δ = r² - sin² u.
+    fn around(r: f64) -> QuadricCurve {
+        let k = [r * r - 0.5, 0.0, 0.0, 0.5, 0.0];
+        let height = Height::Whole {
+            along: along(),
+            radicand: CentredTrigonometric::new(&k, |u| (r - u.sin()) * (r + u.sin())),
+            sign: 1.0,
+        };
+        on_cylinder(Sweep::Round { turns: 1 }, height)
+    }
+
+    #[test]
+    fn a_branch_is_divided_where_it_passes_another() {
+        let close = Curve::Quartic(Box::new(around(1.0 + 1e-9)));
+        let breaks = close.breaks(1.0, 6.0);
+        for node in [FRAC_PI_2, 3.0 * FRAC_PI_2] {
+            assert!(breaks.iter().any(|t| (t - node).abs() < 1e-7), "{breaks:?}");
+        }
+        assert!(breaks.is_sorted());
+        let [lo, hi] = [breaks[0], breaks[breaks.len() - 1]];
+        assert_eq!([lo, hi], [1.0, 6.0]);
+        assert_eq!(around(2.0).near_nodes(), Vec::<f64>::new());
+    }
+
+    /// q = cos u - cos w is zero at a distance w - 1 beyond both ends of an oval over |u| <= 1.
+    #[test]
+    fn an_oval_is_divided_next_to_another() {
+        let oval = |w: f64| {
+            let height = Height::Deflated {
+                along: along(),
+                rest: CentredTrigonometric::linear(&[-w.cos(), 1.0, 0.0]),
+                node: None,
+                sign: 1.0,
+            };
+            on_cylinder(
+                Sweep::Oval {
+                    mid: 0.0,
+                    half: 1.0,
+                },
+                height,
+            )
+        };
+        let mut nodes = oval(1.001).near_nodes();
+        nodes.sort_by(f64::total_cmp);
+        for t in [0.0, PI, TAU] {
+            assert!(
+                nodes.iter().any(|node| (node - t).abs() < 1e-9),
+                "{nodes:?}"
+            );
+        }
+        assert_eq!(oval(2.0).near_nodes(), Vec::<f64>::new());
+    }
 }

@@ -4,7 +4,7 @@ use super::Brep;
 use super::cycle_space;
 use super::disjoint_union::Renumbering;
 use super::end_gaps::{EndGap, gaps_at_ends};
-use super::face_integrals::{FaceArea, FaceIntegrals};
+use super::face_integrals::{FaceArea, FaceDifference, FaceIntegrals};
 use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
@@ -79,6 +79,14 @@ pub enum Violation {
         /// The area, in square units.
         area: f64,
     },
+    /// The integrals over a face depend on how its edges are divided.
+    #[error("face {} has the area {} or {}, depending on the division of its edges", face.0, areas[0], areas[1])]
+    Integral {
+        /// The face.
+        face: FaceId,
+        /// Its area by either division, in square units.
+        areas: [f64; 2],
+    },
     /// A shell is turned inside out.
     #[error("shell {} encloses the volume {volume:e}", shell.0)]
     Orientation {
@@ -132,6 +140,10 @@ impl Violation {
             Self::Area { face, area } => Self::Area {
                 face: ids.face(face),
                 area,
+            },
+            Self::Integral { face, areas } => Self::Integral {
+                face: ids.face(face),
+                areas,
             },
             Self::Orientation { shell, volume } => Self::Orientation {
                 shell: ids.shell(shell),
@@ -206,7 +218,21 @@ pub fn check<N: Float>(
     check_genera(brep, &mut found);
     check_shells(brep, measures, &mut found);
     check_areas(brep, measures, &mut found);
+    check_integrals(brep, measures, &mut found);
     found
+}
+
+/// Integrals that depend on the division of edges miss a part of an edge.
+fn check_integrals<N: Float>(
+    brep: &Brep<N>,
+    measures: &FaceIntegrals<N>,
+    found: &mut Vec<Violation>,
+) {
+    let graded = FaceIntegrals::with_graded_edges(brep);
+    let different = measures.different_faces(brep, &graded);
+    found.extend(
+        different.map(|FaceDifference { face, areas }| Violation::Integral { face, areas }),
+    );
 }
 
 /// A face with a negative area has a loop that was misclassified.

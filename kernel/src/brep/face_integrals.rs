@@ -76,13 +76,22 @@ pub struct FaceIntegrals<N: Float = f64> {
 impl<N: Float> FaceIntegrals<N> {
     /// The integrals over the faces of a boundary, to the precision of f64.
     pub fn new(brep: &Brep<N>) -> Self {
-        Self::with(brep, Care::Doubles)
+        Self::with(brep, Care::Doubles, EdgeDivision::Plain)
     }
 
-    fn with(brep: &Brep<N>, care: Care) -> Self {
+    /// The same integrals with every edge divided further, ever finer towards its ends. For checks: a
+    /// quadrature that misses a part of an edge differs from them.
+    pub(crate) fn with_graded_edges(brep: &Brep<N>) -> Self {
+        Self::with(brep, Care::Doubles, EdgeDivision::Graded)
+    }
+
+    fn with(brep: &Brep<N>, care: Care, division: EdgeDivision) -> Self {
         let shells = brep.topology.shells.iter();
         let shells: Vec<Amid<N>> = shells
-            .map(|shell| Amid::new(brep, shell.faces.iter().copied(), care))
+            .map(|shell| Amid {
+                division,
+                ..Amid::new(brep, shell.faces.iter().copied(), care)
+            })
             .collect();
         let about = |face| &shells[brep.topology.face(face).shell.index()];
         let faces: Vec<FaceId> = brep.topology.face_ids().collect();
@@ -104,12 +113,40 @@ impl<N: Float> FaceIntegrals<N> {
         self.defect
     }
 
+    /// The faces whose integrals differ from others of the same boundary by more than their errors.
+    pub(crate) fn different_faces<'a>(
+        &'a self,
+        brep: &'a Brep<N>,
+        other: &'a Self,
+    ) -> impl Iterator<Item = FaceDifference> + 'a {
+        let part = N::from_f64(SAME) + N::TWO * self.defect.max(other.defect);
+        brep.topology.face_ids().filter_map(move |face| {
+            let size = self.shells[brep.topology.face(face).shell.index()].size;
+            let (area, volume) = (size * size, size * size * size);
+            let first = volume * size;
+            let [ours, theirs] = [self, other].map(|known| known.faces[face.index()]);
+            let sizes = [area, volume, first, first, first];
+            let is_same = (0..sizes.len()).all(|k| {
+                let difference = (ours[k] - theirs[k]).abs();
+                difference.is_at_most(part * sizes[k])
+            });
+            (!is_same).then(|| FaceDifference {
+                face,
+                areas: [ours[0], theirs[0]].map(N::rounded),
+            })
+        })
+    }
+
     /// The mass properties of the solid that the boundary encloses.
     pub fn mass(&self, brep: &Brep<N>) -> Mass {
         let MassEstimate { mass, noise } = self.summed_up(brep);
         match N::IS_DOUBLE || (SLENDER * mass.volume).is_beyond(noise) {
             true => mass,
-            false => Self::with(brep, Care::Digits).summed_up(brep).mass,
+            false => {
+                Self::with(brep, Care::Digits, EdgeDivision::Plain)
+                    .summed_up(brep)
+                    .mass
+            }
         }
     }
 
@@ -211,6 +248,28 @@ impl<N: Float> ShellVolume<N> {
     pub(crate) fn is_clear(&self) -> bool {
         self.volume.abs().is_beyond(self.noise)
     }
+}
+
+/// The difference of equal integrals over a face, relative to the part's size, that is an error of the
+/// quadrature.
+const SAME: f64 = 1.0 / (1_u64 << 33) as f64;
+
+/// A face over which two computations of the same integrals differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FaceDifference {
+    /// The face.
+    pub face: FaceId,
+    /// Its areas.
+    pub areas: [f64; 2],
+}
+
+/// How edges are divided before a quadrature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum EdgeDivision {
+    /// As their curves require.
+    Plain,
+    /// Also at points ever closer to both ends.
+    Graded,
 }
 
 /// The precision of the integrals.
@@ -316,14 +375,15 @@ pub struct FaceArea<N: Float = f64> {
     pub noise: N,
 }
 
-/// A reference point amid some faces, relative to which sums do not cancel, and the size of these
-/// faces.
+/// A reference point amid some faces, relative to which sums do not cancel, the size of these faces,
+/// and how integrals over them are computed.
 #[derive(Clone, Debug)]
 struct Amid<N: Float = f64> {
     reference: Point3<N>,
     size: N,
     /// The precision of the integrals.
     care: Care,
+    division: EdgeDivision,
 }
 
 impl<N: Float> Amid<N> {
@@ -348,6 +408,7 @@ impl<N: Float> Amid<N> {
             reference,
             size,
             care,
+            division: EdgeDivision::Plain,
         }
     }
 

@@ -1,10 +1,10 @@
 //! Sums around the boundary of a face, by Green's theorem.
 
-use super::Moments;
 use super::closed_form::along_edge;
 use super::density::{Density, add};
 use super::ground::{OnEdge, RoundedEdge};
 use super::pole_turns::pole_turns;
+use super::{EdgeDivision, Moments};
 use crate::brep::Brep;
 use crate::brep::topology::{CoedgeId, FaceId, Sense};
 use crate::geometry::curve::Curve;
@@ -93,6 +93,17 @@ fn loop_sum<N: Float>(
     }
 }
 
+/// The fractions of an edge at which it is divided from either end, if finely.
+const GRADES: [f64; 6] = {
+    let mut grades = [1.0 / 16.0; 6];
+    let mut k = 1;
+    while k < grades.len() {
+        grades[k] = grades[k - 1] / 16.0;
+        k += 1;
+    }
+    grades
+};
+
 /// ∫ G du and ∫ du along an edge, split at `marks`.
 fn edge_sum<N: Float>(
     brep: &Brep<N>,
@@ -106,6 +117,10 @@ fn edge_sum<N: Float>(
     let [lo, hi] = brep.range(edge);
     let mut ends = vec![lo, hi];
     ends.extend(marks);
+    if density.amid.division == EdgeDivision::Graded {
+        let fractions = GRADES.iter().flat_map(|&grade| [grade, 1.0 - grade]);
+        ends.extend(fractions.map(|part| lo + (hi - lo) * N::from_f64(part)));
+    }
     ends.sort_by(N::total_cmp);
     let pieces = ends.windows(2).map(|pair| {
         let range = [pair[0], pair[1]];

@@ -1,9 +1,8 @@
 use super::*;
-use crate::brep::face_integrals::Amid;
-use crate::brep::face_integrals::Care;
 use crate::brep::face_integrals::density::Density;
 use crate::brep::face_integrals::ground::{Ground, Middle};
 use crate::brep::face_integrals::outline::by_quadrature;
+use crate::brep::face_integrals::{Amid, Care, EdgeDivision};
 use crate::geometry::curve::Ellipse;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cone, Cylinder, Plane};
@@ -32,6 +31,7 @@ fn both_ways(surface: Surface, curve: &Curve, range: [f64; 2]) -> [Option<[f64; 
         reference,
         size: 4.0,
         care: Care::Doubles,
+        division: EdgeDivision::Plain,
     };
     let density = Density {
         ground: Ground {

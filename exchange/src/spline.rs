@@ -180,9 +180,11 @@ impl Follow<'_> {
     pub fn course(&self) -> Result<BezierSegments, SplineError> {
         let [lo, hi] = self.range;
         let breaks = self.curve.breaks(lo, hi);
-        let mut nodes = vec![self.node(lo, None)];
+        let first = [breaks[0], breaks[1]];
+        let mut nodes = vec![self.node(first, lo, None)];
         for pair in breaks.windows(2) {
-            let end = self.node(pair[1], nodes.last());
+            let smooth = [pair[0], pair[1]];
+            let end = self.node(smooth, pair[1], nodes.last());
             let mut waiting = vec![end];
             // Depth first: `waiting` has the ends of pieces, the next one on top.
             while let (Some(start), Some(end)) = (nodes.last(), waiting.pop()) {
@@ -197,7 +199,7 @@ impl Follow<'_> {
                         limit: LIMIT,
                     });
                 }
-                let middle = self.node(0.5 * (start.t + end.t), Some(start));
+                let middle = self.node(smooth, 0.5 * (start.t + end.t), Some(start));
                 let end = self.nearest_equivalent(end, &middle);
                 waiting.extend([end, middle]);
             }
@@ -251,9 +253,13 @@ impl Follow<'_> {
         node
     }
 
-    fn node(&self, t: f64, before: Option<&Node>) -> Node {
-        let space = self.space(t);
-        let on = self.windows.iter().map(|w| self.on(w, t, space)).collect();
+    /// The node at a parameter of a smooth piece of the curve.
+    fn node(&self, smooth: [f64; 2], t: f64, before: Option<&Node>) -> Node {
+        let inner = self.inner(smooth, t);
+        let space = self.space(t, inner);
+        let near = self.space(inner, self.inner(smooth, inner));
+        let windows = self.windows.iter();
+        let on = windows.map(|w| self.on(w, space, near)).collect();
         let node = Node { t, space, on };
         match before {
             Some(other) => self.nearest_equivalent(node, other),
@@ -261,14 +267,14 @@ impl Follow<'_> {
         }
     }
 
-    /// The point, T and K. Where the curve's speed vanishes they are those of its chord.
-    fn space(&self, t: f64) -> [Jet<f64>; 3] {
+    /// The point, T and K. Where the curve's speed vanishes they are those of its chord to the parameter
+    /// `inner`.
+    fn space(&self, t: f64, inner: f64) -> [Jet<f64>; 3] {
         if self.pace == Pace::Parameter {
             return self.curve.jet(t);
         }
         let p = self.curve.point(t);
         let d = self.curve.derivative(t);
-        let inner = self.inner(t);
         let chord = (self.curve.point(inner) - p) * (inner - t).signum();
         let moves = d.norm() * (inner - t).abs();
         let (tangent, bend) = match moves > STILL * chord.norm() && !self.curve.turns_back(t) {
@@ -282,22 +288,27 @@ impl Follow<'_> {
         })
     }
 
-    /// A parameter close to `t`, towards the middle of the range.
-    fn inner(&self, t: f64) -> f64 {
+    /// A parameter close to `t`, towards the middle of a smooth piece: beyond the piece's end the curve
+    /// may have turned.
+    fn inner(&self, [from, to]: [f64; 2], t: f64) -> f64 {
         let [lo, hi] = self.range;
-        let toward = match t < 0.5 * (lo + hi) {
+        let toward = match t < 0.5 * (from + to) {
             true => 1.0,
             false => -1.0,
         };
-        t + toward * INNER * (hi - lo)
+        t + toward * (INNER * (hi - lo)).min(0.25 * (to - from))
     }
 
     /// The parameters on a surface as functions of the length. On the surface's axis they are
-    /// extrapolated by a Taylor series.
-    fn on(&self, window: &ParameterWindow, t: f64, space: [Jet<f64>; 3]) -> [Jet<f64>; 2] {
-        let nearest_equivalent = self.space(self.inner(t));
+    /// extrapolated by a Taylor series from a point nearby.
+    fn on(
+        &self,
+        window: &ParameterWindow,
+        space: [Jet<f64>; 3],
+        near: [Jet<f64>; 3],
+    ) -> [Jet<f64>; 2] {
         let step = (0..3)
-            .map(|i| (space[i].v - nearest_equivalent[i].v).powi(2))
+            .map(|i| (space[i].v - near[i].v).powi(2))
             .sum::<f64>()
             .sqrt();
         let is_moderate = |on: &[Jet<f64>; 2]| {
@@ -307,12 +318,12 @@ impl Follow<'_> {
         if let Some(on) = window.along(space).filter(is_moderate) {
             return on;
         }
-        let Some(on) = window.along(nearest_equivalent) else {
+        let Some(on) = window.along(near) else {
             return [Jet::constant(0.0); 2];
         };
         let along = |f: &dyn Fn(usize) -> f64| (0..3).map(f).sum::<f64>();
-        let away = along(&|i| (space[i].v - nearest_equivalent[i].v) * nearest_equivalent[i].d)
-            / along(&|i| nearest_equivalent[i].d * nearest_equivalent[i].d);
+        let away =
+            along(&|i| (space[i].v - near[i].v) * near[i].d) / along(&|i| near[i].d * near[i].d);
         on.map(|x| Jet {
             v: x.v + away * (x.d + 0.5 * away * x.dd),
             d: x.d + away * x.dd,

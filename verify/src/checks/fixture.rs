@@ -17,12 +17,16 @@ pub(super) struct FrontView {
     pub drawing: Drawing,
 }
 
+/// The tree of a part in PADL.
+pub(super) fn tree(text: &str) -> Tree {
+    let options = ReadOptions::default();
+    let part = read("part", text.as_bytes(), Format::Padl, &options);
+    part.unwrap().tree
+}
+
 /// The front view of a part in PADL.
 pub(super) fn front_view(text: &str) -> FrontView {
-    let (format, options) = (Format::Padl, ReadOptions::default());
-    let tree = read("part", text.as_bytes(), format, &options)
-        .unwrap()
-        .tree;
+    let tree = tree(text);
     let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
     let bounds = known.tight_bounds();
     let camera = StandardView::Front

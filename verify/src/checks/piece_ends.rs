@@ -60,3 +60,32 @@ impl fmt::Display for DisplacedEnd {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::fixture::front_view;
+
+    /// Two blocks behind one another, one of which hides edges of the other.
+    #[test]
+    fn a_displaced_junction_is_found() {
+        let text = "P = BLO(X=3, Y=1, Z=2) UN BLO(X=2, Y=1, Z=4) AT (MOVX=2, MOVY=2)";
+        let mut seen = front_view(text).seen;
+        let clearance = Clearance {
+            sliver: 1e-9,
+            lateral: 1e-7,
+            shift: 0.0,
+            size: 5.0,
+        };
+        assert_eq!(displaced_ends(&seen, &clearance), []);
+        let used = seen.contours.iter().flat_map(|contour| &contour.pieces);
+        let first = used.filter_map(|piece| piece.start).next().unwrap();
+        seen.junctions[first as usize].space_point[0] += 0.01;
+        let found = displaced_ends(&seen, &clearance);
+        assert!(!found.is_empty());
+        for displaced in found {
+            assert_eq!(displaced.junction, first);
+            assert!((displaced.distance - 0.01).abs() < 1e-6, "{displaced}");
+        }
+    }
+}

@@ -70,8 +70,8 @@ pub struct Tolerance {
 }
 
 impl Shadow<'_> {
-    /// Whether the line of sight of a drawing's point hits material thicker than `least`.
-    fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
+    /// The material thicker than `least` on the line of sight of a drawing's point.
+    fn hits(&self, p: &Point2<f64>, least: f64) -> impl Iterator<Item = [f64; 2]> {
         let LineOfSight { origin, direction } = self.projection.line_of_sight_y_up(p);
         let ray = Ray { origin, direction };
         let near = match self.projection.sight {
@@ -79,7 +79,24 @@ impl Shadow<'_> {
             ViewRay::Direction(_) => f64::NEG_INFINITY,
         };
         let hit = self.material.intervals(&ray, least);
-        hit.iter().any(|[_, hi]| *hi > near)
+        hit.into_iter().filter(move |[_, hi]| *hi > near)
+    }
+
+    /// Whether the line of sight of a drawing's point hits material thicker than `least`.
+    fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
+        self.hits(p, least).next().is_some()
+    }
+
+    /// How far material thinner than rounding continues beyond `none`, if it thins in proportion to the
+    /// distance from there.
+    fn rest(&self, thin: &Point2<f64>, none: &Point2<f64>) -> f64 {
+        let thickness = self.hits(thin, self.rounding).map(|[lo, hi]| hi - lo);
+        let thickness = thickness.fold(0.0, f64::max);
+        let distance = (none - thin).norm();
+        match thickness > self.rounding {
+            true => distance * self.rounding / (thickness - self.rounding),
+            false => distance,
+        }
     }
 }
 
@@ -115,7 +132,9 @@ impl ShadowOutline {
                     continue;
                 };
                 let place = nalgebra::center(&thick, &none);
-                let near = tolerance.image + (none - place).norm();
+                // The point without material is known to the rounding of its thickness.
+                let rest = 2.0 * shadow.rest(&place, &none);
+                let near = tolerance.image + (none - place).norm() + rest;
                 let mut passing = strokes.passing(&place, near);
                 match passing.any(|(_, stroke)| is_outline(stroke)) {
                     true => outline.drawn += 1,
@@ -211,8 +230,10 @@ impl fmt::Display for ShadowOutline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::checks::fixture::{FrontView, front_view};
+    use crate::checks::fixture::{FrontView, front_view, tree};
+    use nalgebra::{Point3, Vector3};
     use premio_drawing::Layer;
+    use premio_visibility::ViewCamera;
 
     /// A dome on its cylinder from the front, with the strokes that are kept.
     fn outline(keeps: impl Fn(Layer, usize) -> bool) -> ShadowOutline {
@@ -270,6 +291,30 @@ mod tests {
             }
         }
         assert!(crossings >= 400, "{crossings}");
+    }
+
+    /// Material between two planes at an angle of 6.5e-11, which meet at x = 0: rays see none of it next
+    /// to the outline.
+    #[test]
+    fn a_thin_wedge_ends_at_its_edge() {
+        let text = "P = (BLO(X=3, Y=9, Z=1) AT (MOVZ=-1) DIF BLO(X=20, Y=20, Z=5)
+            AT (MOVX=-10, MOVY=-5, MOVZ=-5, ROTY=0.0000000037252902984619140625))";
+        let (above, origin) = (Point3::new(0.0, 0.0, 9.0), Point3::origin());
+        let camera = ViewCamera::orthographic(above, origin, Vector3::y()).unwrap();
+        let size = 12.0;
+        let shadow = Shadow {
+            material: &RayOracle::new(&tree(text)),
+            projection: &Projection::new(&camera, size),
+            sliver: 1e-10,
+            rounding: ROUNDINGS * ROUNDING * size,
+        };
+        let course = |t: f64| Point2::new(4.0 * t - 1.5, 4.5);
+        let all = shadow.crossings(&course, 17);
+        let edge = all.iter().find(|crossing| crossing.thick.x > 1.0).unwrap();
+        let none = edge.none.unwrap();
+        let place = nalgebra::center(&edge.thick, &none);
+        let rest = shadow.rest(&place, &none);
+        assert!(none.x > 0.5 * rest && none.x < 2.0 * rest, "{none} {rest}");
     }
 
     #[test]

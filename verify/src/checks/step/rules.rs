@@ -1,5 +1,6 @@
 //! The rules for the solids of a STEP file.
 
+use super::curve::StepCurve;
 use super::shape::{StepEdge, StepEdgeUse, StepFace, StepShape};
 use super::surface::{FaceQuantity, StepSurface};
 use super::walk::FaceIntegral;
@@ -20,7 +21,6 @@ pub struct Known {
     /// The centre of its bounding box.
     pub middle: Point3<f64>,
     pub volume: f64,
-    pub area: f64,
 }
 
 /// A broken rule, with a location.
@@ -129,8 +129,7 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
         }
     }
     measured.volume = volume;
-    // Curves may deviate over the entire surface, and quadrature has a limited precision.
-    let allowed = known.area * known.accuracy + known.size.powi(3) * QUADRATURE;
+    let allowed = volume_error(shape, known) + known.size.powi(3) * QUADRATURE;
     if let Some(volume) = volume
         && (volume - known.volume).abs() > allowed
     {
@@ -139,6 +138,38 @@ pub fn measure(shape: &StepShape, known: &Known) -> Measured {
         measured.broken.push(Broken { rule, place });
     }
     measured
+}
+
+/// The largest error of the volume that displaced edges cause: by the resolution of the boundary, and
+/// by the accuracy of splines. By the divergence theorem the volume is a third of the sum of ∫ P·N dA
+/// over faces, with P about the part's middle; a displaced edge adds to two faces a strip of its length.
+fn volume_error(shape: &StepShape, known: &Known) -> f64 {
+    let distance = 0.5 * known.size;
+    let strip = |edge: &StepEdge| {
+        let displaced = match edge.curve {
+            StepCurve::Spline(_) => known.accuracy,
+            _ => known.resolution,
+        };
+        length(edge) * displaced
+    };
+    let strips: f64 = shape.edges.values().map(strip).sum();
+    2.0 * strips * distance / 3.0
+}
+
+/// The length of an edge.
+fn length(edge: &StepEdge) -> f64 {
+    let points = samples(edge);
+    points.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
+}
+
+/// Points of an edge, in order.
+fn samples(edge: &StepEdge) -> Vec<Point3<f64>> {
+    let stops = edge.curve.stops(edge.range);
+    let steps = stops.windows(2).flat_map(|pair| {
+        let step = (pair[1] - pair[0]) / f64::from(PLACES);
+        (0..=PLACES).map(move |k| pair[0] + step * f64::from(k))
+    });
+    steps.map(|t| edge.curve.at(t).point).collect()
 }
 
 /// The allowed relative error of quadrature.
@@ -159,13 +190,7 @@ fn broken_edge(edge: &StepEdge, known: &Known) -> Vec<Broken> {
         }
     }
     let [from, to] = edge.points;
-    let stops = edge.curve.stops(edge.range);
-    let steps = stops.windows(2).flat_map(|pair| {
-        let step = (pair[1] - pair[0]) / f64::from(PLACES);
-        (0..=PLACES).map(move |k| pair[0] + step * f64::from(k))
-    });
-    let points: Vec<Point3<f64>> = steps.map(|t| edge.curve.at(t).point).collect();
-    let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let length = length(edge);
     let is_open = edge.ends[0] != edge.ends[1];
     // Between two vertices close to each other no reader can distinguish a full turn from an edge
     // of length zero. Between two coincident vertices it is a full turn.

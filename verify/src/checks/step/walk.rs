@@ -29,6 +29,37 @@ impl FaceIntegral {
     /// The integral along a loop of a face.
     pub fn along(&self, shape: &StepShape, face: &StepFace, ring: &[StepEdgeUse]) -> LoopIntegral {
         let surface = &shape.surfaces[&face.surface];
+        // A loop that does not pass through a pole closes in the parameters, so that any v may be the
+        // one at which P is zero. With one next to the loop, the sum of a short loop is exact.
+        let next_to_loop = ring.first().map(|used| {
+            let edge = &shape.edges[&used.edge];
+            let [from, to] = edge.range;
+            surface.parameters(&edge.curve.at(0.5 * (from + to)).point)[1]
+        });
+        let walk = self.walk(shape, face, ring, next_to_loop);
+        let walk = match walk.passes_pole {
+            true => self.walk(shape, face, ring, None),
+            false => walk,
+        };
+        let Walk { flow, is_clear, .. } = walk;
+        let open = walk.gap;
+        let is_open = open[0].abs() > GAP * if surface.has_angle() { 1.0 } else { self.size }
+            || open[1].abs() > GAP * self.size.max(1.0);
+        LoopIntegral {
+            sum: is_clear.then_some(flow),
+            open: (is_clear && is_open).then_some(open),
+        }
+    }
+
+    /// The walk along a loop, with P zero at v₀, or where the surface's formulas have its zero.
+    fn walk<'s>(
+        &self,
+        shape: &'s StepShape,
+        face: &StepFace,
+        ring: &[StepEdgeUse],
+        zero: Option<f64>,
+    ) -> Walk<'s> {
+        let surface = &shape.surfaces[&face.surface];
         let scale = match self.quantity {
             FaceQuantity::Volume => self.size.powi(3),
             FaceQuantity::Area => self.size.powi(2),
@@ -47,17 +78,15 @@ impl FaceIntegral {
             tolerance: self.size * POLE,
             fine: scale * FINE,
             is_clear: true,
+            zero,
+            passes_pole: false,
+            gap: [0.0; 2],
         };
         for used in ring {
             walk.add(&shape.edges[&used.edge], *used);
         }
-        let open = walk.close();
-        let is_open = open[0].abs() > GAP * if surface.has_angle() { 1.0 } else { self.size }
-            || open[1].abs() > GAP * self.size.max(1.0);
-        LoopIntegral {
-            sum: walk.is_clear.then_some(walk.flow),
-            open: (walk.is_clear && is_open).then_some(open),
-        }
+        walk.gap = walk.close();
+        walk
     }
 }
 
@@ -110,6 +139,12 @@ struct Walk<'s> {
     /// The allowed error of a piece's integral.
     fine: f64,
     is_clear: bool,
+    /// The v at which P is zero, if it is not that of the surface's formulas.
+    zero: Option<f64>,
+    /// Whether an edge starts or ends at a pole.
+    passes_pole: bool,
+    /// The gap in both parameters after the last edge.
+    gap: [f64; 2],
 }
 
 /// The distance from a pole, relative to the size, within which a point is at the pole.
@@ -156,6 +191,7 @@ impl Walk<'_> {
             (end, inside(*last, *before)),
         ];
         let poles = poles.map(|(p, inner)| self.surface.pole(&p, &inner, self.tolerance));
+        self.passes_pole |= poles.iter().any(Option::is_some);
         for (k, pair) in stops.windows(2).enumerate() {
             // Between the ends, so that no angle is evaluated at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());
@@ -284,7 +320,7 @@ impl Walk<'_> {
         for (x, weight) in places {
             let StepCurvePoint { point, derivative } = curve.at(middle + half * x);
             at = self.nearest_equivalent(self.surface.parameters(&point), at);
-            let flow = self.surface.flow(self.quantity, at, &self.about);
+            let flow = self.potential(at);
             sum += weight * flow * self.surface.u_speed(&point, &derivative);
         }
         let there = self.surface.parameters(&curve.at(b).point);
@@ -292,6 +328,12 @@ impl Walk<'_> {
             sum: half * sum,
             end: self.nearest_equivalent(there, at),
         }
+    }
+
+    /// P.
+    fn potential(&self, [u, v]: [f64; 2]) -> f64 {
+        let at = |v| self.surface.flow(self.quantity, [u, v], &self.about);
+        at(v) - self.zero.map_or(0.0, at)
     }
 
     /// Returns to the start, and gives the gap in both parameters.

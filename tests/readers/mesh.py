@@ -34,6 +34,12 @@ KNOWN = {
     "cone-around-a-ball-with-a-lip-of-1e-9.glb": SLIVER,
     "cone-around-a-ball-with-a-lip-of-1e-9.3mf": SLIVER,
     "bored-block-far-from-origin.stl": SINGLE,
+    "cone-rim-a-billionth-into-a-ring.stl": SINGLE,
+    "cones-whose-branches-pass-by-1e-9.glb": SINGLE,
+    "coplanar-faces-tilted-by-1e-7.stl": SLIVER,
+    "coplanar-faces-tilted-by-1e-7.obj": SLIVER,
+    "coplanar-faces-tilted-by-1e-7.glb": SLIVER,
+    "coplanar-faces-tilted-by-1e-7.3mf": SLIVER,
 }
 # How far triangles are off, as a part of the size, where nothing is said.
 DEVIATION = 1 / 2000

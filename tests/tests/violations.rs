@@ -3,7 +3,7 @@
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
-use premio_kernel::brep::check::{Violation, check};
+use premio_kernel::brep::check::{Violation, check_integrals};
 use premio_kernel::brep::face_integrals::FaceIntegrals;
 
 /// A plate with a hole.
@@ -19,7 +19,7 @@ fn plate(radius: f64) -> Evaluation {
 #[test]
 fn integrals_of_another_boundary_are_found() {
     let (ours, other) = (plate(4.0), plate(4.00001));
-    let violations = |integrals: &FaceIntegrals| check(&ours.brep, integrals, ours.resolution);
+    let violations = |integrals: &FaceIntegrals| check_integrals(&ours.brep, integrals);
     assert_eq!(violations(&FaceIntegrals::new(&ours.brep)), []);
     let found = violations(&FaceIntegrals::new(&other.brep));
     // Top, bottom and the wall of the hole.

@@ -2,7 +2,7 @@
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::bounding_box::bounds;
-use premio_kernel::brep::check::{Violation, check};
+use premio_kernel::brep::check::{Violation, check, check_integrals};
 use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::double_double::F106;
@@ -54,7 +54,7 @@ struct WideBoundary<N: Float> {
 
 impl<N: Float> WideBoundary<N> {
     fn violations(&self, resolution: f64) -> Vec<Violation> {
-        check(&self.brep, &self.measures, N::from_f64(resolution))
+        all_violations(&self.brep, &self.measures, resolution)
     }
 }
 
@@ -143,10 +143,11 @@ impl Evaluation {
         }
     }
 
-    /// The rules that the boundary breaks.
+    /// The rules that the boundary breaks, among them that the integrals over its faces do not depend on
+    /// how they are computed.
     pub fn violations(&self) -> Vec<Violation> {
         match &self.integrals {
-            Integrals::Doubles(measures) => check(&self.brep, measures, self.resolution),
+            Integrals::Doubles(measures) => all_violations(&self.brep, measures, self.resolution),
             Integrals::DoubleDoubles(wide) => wide.violations(self.resolution),
             Integrals::Extended(wide) => wide.violations(self.resolution),
             Integrals::Components(all) => {
@@ -161,6 +162,17 @@ impl Evaluation {
             }
         }
     }
+}
+
+/// The rules that a boundary and its integrals break.
+fn all_violations<N: Float>(
+    brep: &Brep<N>,
+    measures: &FaceIntegrals<N>,
+    resolution: f64,
+) -> Vec<Violation> {
+    let mut found = check(brep, measures, N::from_f64(resolution));
+    found.extend(check_integrals(brep, measures));
+    found
 }
 
 /// An evaluation in one precision.

@@ -21,9 +21,9 @@ use super::topology::{FaceId, ShellId};
 use crate::concurrency;
 use crate::geometry::bounds::Aabb;
 use crate::geometry::surface::Surface;
-use crate::geometry::vector::rounded;
+use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
-use crate::number::predicates::Compare;
+use crate::number::predicates::{Compare, ROUNDING};
 use face::face_sum;
 use nalgebra::{Point3, Vector3};
 
@@ -119,12 +119,18 @@ impl<N: Float> FaceIntegrals<N> {
         brep: &'a Brep<N>,
         other: &'a Self,
     ) -> impl Iterator<Item = FaceDifference> + 'a {
-        let part = N::from_f64(SAME) + N::TWO * self.defect.max(other.defect);
+        let defect = N::TWO * self.defect.max(other.defect);
         brep.topology.face_ids().filter_map(move |face| {
-            let size = self.shells[brep.topology.face(face).shell.index()].size;
+            let [ours, theirs] = [self, other].map(|known| known.faces[face.index()]);
+            let shell = &self.shells[brep.topology.face(face).shell.index()];
+            // A closed surface may be far larger than its edges.
+            let size = shell.size.max(ours[0].abs().sqrt());
+            let origin = brep.surface(face).frame().origin;
+            let coordinates = shell.reference.coords.length() + (origin - shell.reference).length();
+            let rounding = N::from_f64(NOISE * ROUNDING) * coordinates / size;
+            let part = N::from_f64(SAME) + defect + rounding;
             let (area, volume) = (size * size, size * size * size);
             let first = volume * size;
-            let [ours, theirs] = [self, other].map(|known| known.faces[face.index()]);
             let sizes = [area, volume, first, first, first];
             let is_same = (0..sizes.len()).all(|k| {
                 let difference = (ours[k] - theirs[k]).abs();
@@ -443,13 +449,26 @@ impl<N: Float> Amid<N> {
     }
 }
 
-/// A box amid a face: of its edges' ends and middles, or of the whole surface if it has no edges.
+/// A fraction of an edge next to no simple one.
+const OTHER: f64 = 0.3;
+
+/// A box amid a face: of points of its edges, or of the whole surface if it has no edges.
 fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
     let mut b = Aabb::EMPTY;
     for edge in brep.topology.edges_of(face) {
         let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
         b = b.hull(&Aabb::new(&curve.point(lo)));
         b = b.hull(&Aabb::new(&curve.point(N::HALF * (lo + hi))));
+        // The end and the middle of a closed curve that crosses itself may be one point.
+        if brep
+            .topology
+            .edge(edge)
+            .ends
+            .is_none_or(|[from, to]| from == to)
+        {
+            let other = lo + (hi - lo) * N::from_f64(OTHER);
+            b = b.hull(&Aabb::new(&curve.point(other)));
+        }
     }
     let surface = brep.surface(face);
     let radius = match surface {

@@ -93,9 +93,10 @@ fn loop_sum<N: Float>(
     }
 }
 
-/// The fractions of an edge at which it is divided from either end, if finely.
-const GRADES: [f64; 6] = {
-    let mut grades = [1.0 / 16.0; 6];
+/// The fractions of an edge at which it is divided from either end, if finely. Still closer to a pole
+/// the angle of a point is rounding.
+const GRADES: [f64; 4] = {
+    let mut grades = [1.0 / 16.0; 4];
     let mut k = 1;
     while k < grades.len() {
         grades[k] = grades[k - 1] / 16.0;

@@ -58,6 +58,8 @@ struct Crossing {
     thick: Point2<f64>,
     /// None if thin material continues beyond the next step.
     none: Option<Point2<f64>>,
+    /// The next step.
+    outside: Point2<f64>,
 }
 
 /// The allowed distance of a stroke from the outline found by rays.
@@ -85,6 +87,14 @@ impl Shadow<'_> {
     /// Whether the line of sight of a drawing's point hits material thicker than `least`.
     fn covers(&self, p: &Point2<f64>, least: f64) -> bool {
         self.hits(p, least).next().is_some()
+    }
+
+    /// Whether there is any material at a distance from the point without thick material, towards the next
+    /// step: another sheet in front of it or behind it, thinner than rounding.
+    fn continues(&self, none: &Point2<f64>, outside: &Point2<f64>, distance: f64) -> bool {
+        let step = outside - none;
+        let part = (distance / step.norm()).min(1.0);
+        self.hits(&(none + step * part), 0.0).next().is_some()
     }
 
     /// How far material thinner than rounding continues beyond `none`, if it thins in proportion to the
@@ -126,7 +136,8 @@ impl ShadowOutline {
         let strokes = Strokes::new(&drawing.strokes);
         let mut outline = Self::default();
         let mut follow = |course: &dyn Fn(f64) -> Point2<f64>, steps: usize| {
-            for Crossing { thick, none } in shadow.crossings(course, steps) {
+            for crossing in shadow.crossings(course, steps) {
+                let Crossing { thick, none, .. } = crossing;
                 let Some(none) = none else {
                     outline.unclear += 1;
                     continue;
@@ -134,6 +145,10 @@ impl ShadowOutline {
                 let place = nalgebra::center(&thick, &none);
                 // The point without material is known to the rounding of its thickness.
                 let rest = 2.0 * shadow.rest(&place, &none);
+                if shadow.continues(&none, &crossing.outside, tolerance.image + rest) {
+                    outline.unclear += 1;
+                    continue;
+                }
                 let near = tolerance.image + (none - place).norm() + rest;
                 let mut passing = strokes.passing(&place, near);
                 match passing.any(|(_, stroke)| is_outline(stroke)) {
@@ -187,7 +202,12 @@ impl Shadow<'_> {
             let is_any = |t: f64| self.covers(&course(t), self.rounding);
             let none = (!is_any(outside)).then(|| course(last(thick, outside, is_any)));
             let thick = course(thick);
-            found.push(Crossing { thick, none });
+            let outside = course(outside);
+            found.push(Crossing {
+                thick,
+                none,
+                outside,
+            });
         }
         found
     }
@@ -284,7 +304,7 @@ mod tests {
             let part = (k as f64 * SPREAD[0]).fract();
             let y = lo.y + (hi.y - lo.y) * part;
             let course = |t: f64| Point2::new(lo.x - 1.0 + (hi.x - lo.x + 2.0) * t, y);
-            for Crossing { thick, none } in shadow.crossings(&course, 64) {
+            for Crossing { thick, none, .. } in shadow.crossings(&course, 64) {
                 let none = none.unwrap();
                 assert!((none - thick).norm() < 1e-6, "{thick:?} {none:?}");
                 crossings += 1;
@@ -315,6 +335,33 @@ mod tests {
         let place = nalgebra::center(&edge.thick, &none);
         let rest = shadow.rest(&place, &none);
         assert!(none.x > 0.5 * rest && none.x < 2.0 * rest, "{none} {rest}");
+    }
+
+    /// A block behind a sheet that is thinner than rounding.
+    #[test]
+    fn a_thin_sheet_continues_beyond_a_block() {
+        let text = "P = BLO(X=1, Y=1, Z=1) AT (MOVZ=-1)
+            UN (BLO(X=3, Y=3, Z=1) DIF BLO(X=5, Y=5, Z=1) AT (MOVX=-1, MOVY=-1, MOVZ=0.0000000000005))";
+        let (above, origin) = (Point3::new(0.0, 0.0, 9.0), Point3::origin());
+        let camera = ViewCamera::orthographic(above, origin, Vector3::y()).unwrap();
+        let shadow = Shadow {
+            material: &RayOracle::new(&tree(text)),
+            projection: &Projection::new(&camera, 4.0),
+            sliver: 1e-10,
+            rounding: 1e-12,
+        };
+        let course = |y: f64| move |t: f64| Point2::new(2.0 * t + 0.5, y);
+        for (y, count) in [(0.5, 1), (2.0, 0), (-0.5, 0)] {
+            let all = shadow.crossings(&course(y), 17);
+            assert_eq!(all.len(), count, "{y}");
+            for crossing in all {
+                let none = crossing.none.unwrap();
+                assert!(shadow.continues(&none, &crossing.outside, 1e-3));
+                let (inner, outer) = (Point2::new(2.9, y), Point2::new(3.1, y));
+                assert!(shadow.continues(&inner, &outer, 0.05));
+                assert!(!shadow.continues(&inner, &outer, 0.15));
+            }
+        }
     }
 
     #[test]

@@ -6,9 +6,12 @@ use super::{Branch, IntersectionError, Node, SurfaceIntersection, parts_on, plac
 use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::curve::{Circle, Curve};
 use crate::geometry::curve_surface::lies_on;
-use crate::geometry::surface::{Plane, Surface, Torus};
+use crate::geometry::elliptic_surface::EllipticCone;
+use crate::geometry::frame::Frame;
+use crate::geometry::surface::{Cone, Plane, Surface, Torus};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
 use crate::geometry::trace::{BranchPosition, trace};
+use crate::geometry::unresolved::Unresolved;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::{Predicates, Side};
@@ -112,6 +115,12 @@ fn traced<N: Float>(
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
     let traced = trace(t, form, predicates.resolution())?;
     let own = Surface::Torus(*t);
+    for singular in &traced.singular {
+        let [theta, phi] = singular.angles;
+        if !is_on_zero_set(other, &own.point(theta, phi), predicates) {
+            return Err(Unresolved::at(singular.angles).into());
+        }
+    }
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
         let p = own.point(*theta, *phi);
@@ -159,7 +168,8 @@ fn traced<N: Float>(
     }
     for s in singular {
         let point = own.point(s.angles[0], s.angles[1]);
-        let lies_on = |s: &Surface<N>| !has_other_sheet(s) || predicates.within(s.distance(&point));
+        let lies_on =
+            |s: &Surface<N>| other_sheet(s).is_none() || predicates.within(s.distance(&point));
         if !lies_on(&own) || !lies_on(other) {
             continue;
         }
@@ -187,16 +197,48 @@ fn traced<N: Float>(
     Ok(meeting)
 }
 
-/// Whether the surface is one of two on which its implicit polynomial vanishes.
-fn has_other_sheet<N: Float>(surface: &Surface<N>) -> bool {
+/// The other nappe of a cone, or the other sheet of a torus: the implicit polynomial of the surface
+/// vanishes on it too.
+fn other_sheet<N: Float>(surface: &Surface<N>) -> Option<Surface<N>> {
+    let turned = |frame: &Frame<N>| Frame {
+        y: -frame.y,
+        z: -frame.z,
+        ..*frame
+    };
     match surface {
-        Surface::Cone(_) | Surface::EllipticCone(_) => true,
-        Surface::Torus(torus) => !torus.is_ring(),
-        Surface::Plane(_)
+        Surface::Cone(cone) => Some(Surface::Cone(Cone {
+            frame: turned(&cone.frame),
+            ..*cone
+        })),
+        Surface::EllipticCone(cone) => Some(Surface::EllipticCone(EllipticCone {
+            frame: turned(&cone.frame),
+            ..*cone
+        })),
+        Surface::Torus(torus) if !torus.is_ring() => Some(Surface::Torus(Torus {
+            major: -torus.major,
+            ..*torus
+        })),
+        Surface::Torus(_)
+        | Surface::Plane(_)
         | Surface::Cylinder(_)
         | Surface::Sphere(_)
         | Surface::EllipticCylinder(_)
-        | Surface::Ellipsoid(_) => false,
+        | Surface::Ellipsoid(_) => None,
+    }
+}
+
+/// Whether a singular point of the trace lies on the zero set of the surface's polynomial, within the
+/// resolution. Next to an apex the polynomial is the square of a distance: it is below the resolution
+/// at points that are far from both nappes.
+fn is_on_zero_set<N: Float>(
+    surface: &Surface<N>,
+    point: &Point3<N>,
+    predicates: &Predicates,
+) -> bool {
+    let is_on = |sheet: &Surface<N>| predicates.within(sheet.distance(point));
+    match other_sheet(surface) {
+        Some(other) => is_on(surface) || is_on(&other),
+        None => true,
     }
 }
 

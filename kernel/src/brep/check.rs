@@ -221,8 +221,8 @@ pub fn check<N: Float>(
     found
 }
 
-/// The faces whose integrals depend on how edges are divided: a quadrature misses a part of an edge.
-/// This takes several times as long as the integrals.
+/// The faces whose integrals depend on how edges are divided: the quadrature has no node in a part of an
+/// edge. The check takes several times as long as the integrals, so that [`check`] leaves it out.
 pub fn check_integrals<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>) -> Vec<Violation> {
     let graded = FaceIntegrals::with_graded_edges(brep);
     let different = measures.different_faces(brep, &graded);

@@ -79,8 +79,8 @@ impl<N: Float> FaceIntegrals<N> {
         Self::with(brep, Care::Doubles, EdgeDivision::Plain)
     }
 
-    /// The same integrals with every edge divided further, ever finer towards its ends. For checks: a
-    /// quadrature that misses a part of an edge differs from them.
+    /// The same integrals with every edge divided ever finer towards its ends, to check those of
+    /// [`Self::new`]: where a quadrature has no node in a part of an edge, the two differ.
     pub(crate) fn with_graded_edges(brep: &Brep<N>) -> Self {
         Self::with(brep, Care::Doubles, EdgeDivision::Graded)
     }
@@ -113,7 +113,7 @@ impl<N: Float> FaceIntegrals<N> {
         self.defect
     }
 
-    /// The faces whose integrals differ from others of the same boundary by more than their errors.
+    /// The faces over which two computations of the integrals differ by more than their errors.
     pub(crate) fn different_faces<'a>(
         &'a self,
         brep: &'a Brep<N>,
@@ -128,7 +128,7 @@ impl<N: Float> FaceIntegrals<N> {
             let origin = brep.surface(face).frame().origin;
             let coordinates = shell.reference.coords.length() + (origin - shell.reference).length();
             let rounding = N::from_f64(NOISE * ROUNDING) * coordinates / size;
-            let part = N::from_f64(SAME) + defect + rounding;
+            let part = N::from_f64(MAX_DIFFERENCE) + defect + rounding;
             let (area, volume) = (size * size, size * size * size);
             let first = volume * size;
             let sizes = [area, volume, first, first, first];
@@ -256,9 +256,8 @@ impl<N: Float> ShellVolume<N> {
     }
 }
 
-/// The difference of equal integrals over a face, relative to the part's size, that is an error of the
-/// quadrature.
-const SAME: f64 = 1.0 / (1_u64 << 33) as f64;
+/// The largest difference of two computations of an integral over a face, relative to the part's size.
+const MAX_DIFFERENCE: f64 = 1.0 / (1_u64 << 33) as f64;
 
 /// A face over which two computations of the same integrals differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -389,6 +388,7 @@ struct Amid<N: Float = f64> {
     size: N,
     /// The precision of the integrals.
     care: Care,
+    /// How edges are divided.
     division: EdgeDivision,
 }
 
@@ -449,8 +449,8 @@ impl<N: Float> Amid<N> {
     }
 }
 
-/// A fraction of an edge next to no simple one.
-const OTHER: f64 = 0.3;
+/// A fraction of an edge that is neither its end nor its middle.
+const ASYMMETRIC: f64 = 0.3;
 
 /// A box amid a face: of points of its edges, or of the whole surface if it has no edges.
 fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
@@ -466,7 +466,7 @@ fn box_of<N: Float>(brep: &Brep<N>, face: FaceId) -> Aabb {
             .ends
             .is_none_or(|[from, to]| from == to)
         {
-            let other = lo + (hi - lo) * N::from_f64(OTHER);
+            let other = lo + (hi - lo) * N::from_f64(ASYMMETRIC);
             b = b.hull(&Aabb::new(&curve.point(other)));
         }
     }

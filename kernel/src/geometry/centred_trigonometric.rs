@@ -21,7 +21,7 @@ pub(crate) struct TrigonometricMinimum<N: Float = f64> {
     pub rise: [N; 3],
 }
 
-/// A complex angle, or its conjugate.
+/// A complex angle, up to conjugation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ComplexAngle<N: Float = f64> {
     /// The real part.

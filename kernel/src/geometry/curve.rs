@@ -300,8 +300,9 @@ impl<N: Float> Curve<N> {
         (dd - d * (d.dot(&dd) / speed2)) / speed2
     }
 
-    /// The ends of the smooth pieces of the range [lo, hi], including both ends of the range. A curve
-    /// that turns within a short range is divided there: samples on one side do not show the other.
+    /// The ends of the smooth pieces of the range [lo, hi], including both ends of the range. A curve of
+    /// quadrics is also divided where it passes close to a node: samples on one side of such a turn do
+    /// not show the other side.
     pub fn breaks(&self, lo: N, hi: N) -> Vec<N> {
         let mut breaks = vec![lo];
         match self {

@@ -264,8 +264,8 @@ impl<N: Float> QuadricCurve<N> {
         !zeros.is_empty() && zeros.iter().all(near)
     }
 
-    /// The parameters within one period next to which the curve turns within a short range, as it
-    /// passes a point where it would cross itself.
+    /// The parameters within one period at which the curve passes close to a node, a point where two
+    /// branches would cross. It turns there within a short range of the parameter.
     pub(super) fn near_nodes(&self) -> Vec<N> {
         match &self.height {
             Height::Whole { radicand, .. } => radicand
@@ -282,7 +282,7 @@ impl<N: Float> QuadricCurve<N> {
         }
     }
 
-    /// Whether the parameter of a complex angle is close to a real one.
+    /// Whether the parameter at a complex angle has a small imaginary part.
     fn is_close(&self, angle: &ComplexAngle<N>) -> bool {
         let range = N::from_f64(SHORT_RANGE);
         match self.sweep {
@@ -364,7 +364,7 @@ impl<N: Float> QuadricCurve<N> {
 /// Zeros closer than this, in radians, are one double zero.
 const DOUBLE: f64 = 1.0 / (1 << 20) as f64;
 
-/// The length of a range of the parameter, in radians, that is short against a quarter turn.
+/// The largest imaginary part, in radians, of a branch point at which the curve turns sharply.
 const SHORT_RANGE: f64 = 1.0 / 4.0;
 
 /// √(sin((u-u0)/2) sin((u1-u)/2)) for u = mid - half cos t, analytic, with the sign of sin t.

@@ -89,8 +89,8 @@ impl Shadow<'_> {
         self.hits(p, least).next().is_some()
     }
 
-    /// Whether there is any material at a distance from the point without thick material, towards the next
-    /// step: another sheet in front of it or behind it, thinner than rounding.
+    /// Whether a line of sight at a distance beyond `none`, towards the next step, hits any material: a
+    /// sheet thinner than rounding, in front of the thick material or behind it.
     fn continues(&self, none: &Point2<f64>, outside: &Point2<f64>, distance: f64) -> bool {
         let step = outside - none;
         let part = (distance / step.norm()).min(1.0);
@@ -143,7 +143,7 @@ impl ShadowOutline {
                     continue;
                 };
                 let place = nalgebra::center(&thick, &none);
-                // The point without material is known to the rounding of its thickness.
+                // Rays lose material that is thinner than rounding before it ends.
                 let rest = 2.0 * shadow.rest(&place, &none);
                 if shadow.continues(&none, &crossing.outside, tolerance.image + rest) {
                     outline.unclear += 1;

@@ -93,8 +93,8 @@ fn loop_sum<N: Float>(
     }
 }
 
-/// The fractions of an edge at which it is divided from either end, if finely. Still closer to a pole
-/// the angle of a point is rounding.
+/// The distances from either end, relative to the edge, at which it is divided for checks. Closer to a
+/// pole the angle of a point is lost in rounding.
 const GRADES: [f64; 4] = {
     let mut grades = [1.0 / 16.0; 4];
     let mut k = 1;

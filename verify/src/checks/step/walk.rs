@@ -29,8 +29,9 @@ impl FaceIntegral {
     /// The integral along a loop of a face.
     pub fn along(&self, shape: &StepShape, face: &StepFace, ring: &[StepEdgeUse]) -> LoopIntegral {
         let surface = &shape.surfaces[&face.surface];
-        // A loop that does not pass through a pole closes in the parameters, so that any v may be the
-        // one at which P is zero. With one next to the loop, the sum of a short loop is exact.
+        // The integral along a loop that closes in the parameters does not depend on the v₀ at which P
+        // is zero. With v₀ next to the loop, P is small on a short loop, and its rounding too. At a pole
+        // P is the one of the surface's formulas.
         let next_to_loop = ring.first().map(|used| {
             let edge = &shape.edges[&used.edge];
             let [from, to] = edge.range;
@@ -330,7 +331,7 @@ impl Walk<'_> {
         }
     }
 
-    /// P.
+    /// P at parameters.
     fn potential(&self, [u, v]: [f64; 2]) -> f64 {
         let at = |v| self.surface.flow(self.quantity, [u, v], &self.about);
         at(v) - self.zero.map_or(0.0, at)

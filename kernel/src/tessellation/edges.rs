@@ -1,6 +1,6 @@
 //! Division of edges into chords, once for all faces.
 
-use super::Accuracy;
+use super::{Accuracy, LIMIT, TessellationError};
 use crate::brep::Brep;
 use crate::brep::topology::{EdgeId, FaceId};
 use nalgebra::{Point3, Vector3};
@@ -40,17 +40,31 @@ const FINEST: f64 = 1.0 / (1u64 << 40) as f64;
 pub(super) const STEEPEST: f64 = 0.6;
 
 impl Polylines {
-    /// Divides the edges so that every chord is within the accuracy of its curve.
-    pub fn new(brep: &Brep, accuracy: &Accuracy) -> Self {
+    /// Divides the edges so that every chord is within the accuracy of its curve, or shorter than
+    /// the resolution.
+    ///
+    /// # Errors
+    /// An edge takes more than [`LIMIT`] points.
+    pub fn new(
+        brep: &Brep,
+        accuracy: &Accuracy,
+        resolution: f64,
+    ) -> Result<Self, TessellationError> {
         let mut lines = Self {
             points: brep.geometry.points.clone(),
             nodes: Vec::new(),
         };
         for edge in brep.topology.edge_ids() {
-            let nodes = lines.divided(brep, edge, accuracy);
+            let chord = Chord {
+                brep,
+                edge,
+                accuracy,
+                resolution,
+            };
+            let nodes = lines.divided(&chord)?;
             lines.nodes.push(nodes);
         }
-        lines
+        Ok(lines)
     }
 
     /// The nodes of an edge.
@@ -70,7 +84,8 @@ impl Polylines {
         self.points.len() as u32 - 1
     }
 
-    fn divided(&mut self, brep: &Brep, edge: EdgeId, accuracy: &Accuracy) -> Vec<Node> {
+    fn divided(&mut self, chord: &Chord<'_>) -> Result<Vec<Node>, TessellationError> {
+        let Chord { brep, edge, .. } = *chord;
         let curve = brep.curve(edge);
         let [lo, hi] = brep.range(edge);
         let mut breaks = curve.breaks(lo, hi);
@@ -82,7 +97,6 @@ impl Polylines {
         if breaks.len() == 2 && brep.topology.edge(edge).coedges.len() > 2 {
             breaks.insert(1, 0.5 * (lo + hi));
         }
-        let chord = Chord::new(brep, edge, accuracy);
         let mut at = vec![lo];
         for piece in breaks.windows(2) {
             // Depth first: the second half is pushed and the first is handled now.
@@ -93,6 +107,10 @@ impl Polylines {
                     at.push(b);
                 } else {
                     waiting.extend([[middle, b], [a, middle]]);
+                }
+                if at.len() > LIMIT {
+                    let face = brep.topology.faces_of(edge).next().unwrap_or(FaceId(0));
+                    return Err(TessellationError::TooMany { face, limit: LIMIT });
                 }
             }
         }
@@ -108,7 +126,7 @@ impl Polylines {
             };
             nodes.push(Node { t, point });
         }
-        nodes
+        Ok(nodes)
     }
 
     /// Adds a node at a parameter inside the edge's range.
@@ -154,22 +172,24 @@ struct Chord<'a> {
     brep: &'a Brep,
     edge: EdgeId,
     accuracy: &'a Accuracy,
+    resolution: f64,
 }
 
-impl<'a> Chord<'a> {
-    fn new(brep: &'a Brep, edge: EdgeId, accuracy: &'a Accuracy) -> Self {
-        Self {
-            brep,
-            edge,
-            accuracy,
-        }
-    }
-
+impl Chord<'_> {
     fn fits(&self, a: f64, b: f64) -> bool {
         let curve = self.brep.curve(self.edge);
         let [p, q] = [a, b].map(|t| curve.point(t));
         let inner = [0.25, 0.5, 0.75].map(|part| a + part * (b - a));
-        let on = |t: f64| off_chord(&curve.point(t), &p, &q) <= self.accuracy.deviation;
+        let between = inner.map(|t| curve.point(t));
+        // Shorter pieces have points that only rounding tells apart, and no direction.
+        if between
+            .iter()
+            .chain([&q])
+            .all(|x| (x - p).norm() <= self.resolution)
+        {
+            return true;
+        }
+        let on = |x: &Point3<f64>| off_chord(x, &p, &q) <= self.accuracy.deviation;
         let greatest = self.accuracy.angle.min(STEEPEST);
         // An end may be a cusp, which has no tangent, or an apex, which has no normal.
         let bends = [a, inner[0], inner[1], inner[2], b].map(|t| t + (inner[1] - t) / 64.0);
@@ -178,7 +198,7 @@ impl<'a> Chord<'a> {
             let ends = turned(&directions[0], &directions[4]);
             !ends && !directions.windows(2).any(|w| turned(&w[0], &w[1]))
         };
-        inner.iter().all(|&t| on(t))
+        between.iter().all(on)
             && flat(bends.map(|t| curve.tangent(t)))
             && self.brep.topology.faces_of(self.edge).all(|face| {
                 let surface = self.brep.surface(face);

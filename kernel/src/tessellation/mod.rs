@@ -110,7 +110,7 @@ pub fn tessellate(
     accuracy: &Accuracy,
     resolution: f64,
 ) -> Result<Mesh, TessellationError> {
-    let mut lines = Polylines::new(brep, accuracy);
+    let mut lines = Polylines::new(brep, accuracy, resolution)?;
     let charts: Vec<Chart> = brep
         .topology
         .face_ids()

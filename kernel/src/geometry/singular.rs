@@ -45,6 +45,9 @@ pub(super) struct Critical<N: Float = f64> {
 
 /// The largest zone.
 const ZONE: f64 = 0.05;
+/// The value of F at a critical point off the curve, relative to the rounding error, from which on
+/// the branches on both sides are known to a small part of their distance.
+const APART: f64 = 1024.0;
 /// The depth of cells from which on degenerate points are searched for.
 const DEEP: u32 = 10;
 
@@ -133,7 +136,9 @@ impl<'t, 'a, N: Float> CriticalSearch<'t, 'a, N> {
             return Ok(());
         };
         let value = self.tracer.form.value(point[0], point[1]).abs();
-        if value > self.tracer.resolution {
+        let t = self.tracer;
+        let is_apart = value > N::from_f64(APART) * t.slop && !(t.is_on_curve)(&point);
+        if value > t.resolution || is_apart {
             self.add_miss(point, value);
             return Ok(());
         }

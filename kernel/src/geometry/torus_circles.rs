@@ -169,7 +169,7 @@ mod tests {
             let p = Surface::Torus(torus).point(theta, phi);
             other.level([p.x, p.y, p.z])
         });
-        trace(&torus, &form, 1e-11).unwrap().branches
+        trace(&torus, &form, 1e-11, &|_| true).unwrap().branches
     }
 
     /// The number of times that one angle crosses a value along a curve.

@@ -38,6 +38,9 @@ pub(super) struct Tracer<'a, N: Float = f64> {
     /// A bound of the rounding error of the form.
     pub slop: N,
     pub resolution: N,
+    /// Whether a point lies within the resolution of the curve. Where the form is far less than a
+    /// distance, its value does not show it.
+    pub is_on_curve: &'a dyn Fn(&[N; 2]) -> bool,
     /// The form rounded to f64, for extended precision.
     f64_form: Option<Box<BivariateTrigPoly>>,
     /// The number of cells that may still be examined.
@@ -71,13 +74,18 @@ pub(super) fn deepest<N: Float>() -> u32 {
 const SPARED: u32 = 4;
 
 impl<'a, N: Float> Tracer<'a, N> {
-    pub(super) fn new(form: &'a BivariateTrigPoly<N>, resolution: N) -> Self {
+    pub(super) fn new(
+        form: &'a BivariateTrigPoly<N>,
+        resolution: N,
+        is_on_curve: &'a dyn Fn(&[N; 2]) -> bool,
+    ) -> Self {
         let slop = slop(form);
         Self {
             form,
             reaches: form.reaches(),
             slop,
             resolution: resolution.max(slop),
+            is_on_curve,
             f64_form: (!N::IS_DOUBLE).then(|| Box::new(form.to_f64())),
             cells: Counter::new(cell_limit::<N>()),
         }
@@ -107,6 +115,7 @@ impl<'a, N: Float> Tracer<'a, N> {
             reaches: self.reaches.to_f64(),
             slop,
             resolution: self.resolution.rounded(),
+            is_on_curve: &|_| true,
             f64_form: None,
             cells: Counter::default(),
         })

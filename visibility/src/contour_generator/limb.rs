@@ -172,7 +172,7 @@ fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>,
         return Ok(circles);
     }
     let form = torus_form(s, &local);
-    let traced = trace(s, &form, resolution)?;
+    let traced = trace(s, &form, resolution, &|_| true)?;
     let mut limbs: Vec<Limb> = traced
         .branches
         .into_iter()

@@ -113,13 +113,13 @@ fn traced<N: Float>(
     form: &BivariateTrigPoly<N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let traced = trace(t, form, predicates.resolution())?;
     let own = Surface::Torus(*t);
-    for singular in &traced.singular {
-        let [theta, phi] = singular.angles;
-        if !is_on_zero_set(other, &own.point(theta, phi), predicates) {
-            return Err(Unresolved::at(singular.angles).into());
-        }
+    let is_on_curve =
+        |&[theta, phi]: &[N; 2]| is_on_zero_set(other, &own.point(theta, phi), predicates);
+    let traced = trace(t, form, predicates.resolution(), &is_on_curve)?;
+    let mut singular = traced.singular.iter().map(|s| s.angles);
+    if let Some(angles) = singular.find(|angles| !is_on_curve(angles)) {
+        return Err(Unresolved::at(angles).into());
     }
     let mut meeting = SurfaceIntersection::nothing();
     for [theta, phi] in &traced.close {
@@ -227,9 +227,9 @@ fn other_sheet<N: Float>(surface: &Surface<N>) -> Option<Surface<N>> {
     }
 }
 
-/// Whether a singular point of the trace lies on the zero set of the surface's polynomial, within the
-/// resolution. Next to an apex the polynomial is the square of a distance: it is below the resolution
-/// at points that are far from both nappes.
+/// Whether a point lies on the zero set of the surface's polynomial, within the resolution. Next to
+/// an apex the polynomial is the square of a distance: it is below the resolution at points that
+/// are far from both nappes.
 fn is_on_zero_set<N: Float>(
     surface: &Surface<N>,
     point: &Point3<N>,

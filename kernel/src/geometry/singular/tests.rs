@@ -21,7 +21,7 @@ const TORUS: Torus = Torus {
 /// The zero set of a function of the angles; every branch must be complete, with every point on it.
 fn traced(f: impl Fn(f64, f64) -> f64) -> Traced {
     let form = BivariateTrigPoly::interpolate(&f);
-    let traced = trace(&TORUS, &form, 1e-11).unwrap();
+    let traced = trace(&TORUS, &form, 1e-11, &|_| true).unwrap();
     for b in &traced.branches {
         for i in 0..10 * b.segments.len() {
             let [theta, phi] = b.angles(f64::from(i as u32) / 10.0);

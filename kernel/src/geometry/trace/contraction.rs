@@ -117,7 +117,13 @@ mod tests {
             major: F106::from_f64(3.0),
             minor: F106::from_f64(1.0),
         };
-        let traced = trace(&torus, &form(F106::from_f64(off)), F106::from_f64(1e-10)).unwrap();
+        let traced = trace(
+            &torus,
+            &form(F106::from_f64(off)),
+            F106::from_f64(1e-10),
+            &|_| true,
+        )
+        .unwrap();
         for branch in &traced.branches {
             for k in 0..3 * branch.segments.len() {
                 let at = branch.angles(F106::from_f64(k as f64 / 3.0));
@@ -151,7 +157,7 @@ mod tests {
     fn a_strip_contains_the_curve_and_is_empty_without_one() {
         let mut form = BivariateTrigPoly::<f64>::zero();
         (form.0[0][2], form.0[2][2]) = (1.0, 1.0);
-        let tracer = Tracer::new(&form, 1e-11);
+        let tracer = Tracer::new(&form, 1e-11, &|_| true);
         let over = |lo: f64, hi: f64| {
             let cell = Cell {
                 lo: [-0.125, lo],

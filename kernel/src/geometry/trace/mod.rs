@@ -133,7 +133,8 @@ impl<N: Float> Tracer<'_, N> {
     }
 }
 
-/// All branches of `form` = 0 on the torus. `form` is a distance to first order.
+/// All branches of `form` = 0 on the torus. `form` is a distance to first order, except where
+/// `is_on_curve` shows that a point of a small value is farther than the resolution from the curve.
 ///
 /// # Errors
 /// The curve has a singular point of an unknown kind, or branches that are too close to be
@@ -142,8 +143,9 @@ pub fn trace<N: Float>(
     torus: &Torus<N>,
     form: &BivariateTrigPoly<N>,
     resolution: N,
+    is_on_curve: &dyn Fn(&[N; 2]) -> bool,
 ) -> Result<Traced<N>, Unresolved> {
-    let tracer = Tracer::new(form, resolution);
+    let tracer = Tracer::new(form, resolution, is_on_curve);
     let Critical {
         singular: points,
         close,
@@ -179,7 +181,7 @@ mod tests {
             let p = Surface::Torus(torus).point(x, y);
             surface.level([p.x, p.y, p.z])
         });
-        let traced = trace(&torus, &form, 1e-11).unwrap();
+        let traced = trace(&torus, &form, 1e-11, &|_| true).unwrap();
         for b in &traced.branches {
             for i in 0..(10 * b.segments.len()) {
                 let p = b.point(i as f64 / 10.0);

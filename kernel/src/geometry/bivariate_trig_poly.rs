@@ -29,6 +29,20 @@ pub(crate) struct Partials<S> {
     pub yy: S,
 }
 
+impl<S> Partials<S> {
+    /// A function of each of them.
+    pub fn map<T>(self, f: impl Fn(S) -> T) -> Partials<T> {
+        Partials {
+            f: f(self.f),
+            x: f(self.x),
+            y: f(self.y),
+            xx: f(self.xx),
+            xy: f(self.xy),
+            yy: f(self.yy),
+        }
+    }
+}
+
 /// The five functions of an angle with two derivatives.
 fn basis<N: Float, S: Analytic<Float = N>>(angle: S) -> [[S; 5]; 3] {
     let (s, c) = angle.sin_cos();

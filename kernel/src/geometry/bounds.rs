@@ -151,7 +151,7 @@ pub fn pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>
 /// enlarged by more than rounding moves the curve; next to a node that is the square root of the
 /// rounding. A curve that rounding moves further is sampled instead.
 fn rounded_pieces<N: Float>(curve: &Curve<N>, [lo, hi]: [N; 2]) -> Vec<CurvePiece<N>> {
-    let rounded_curve = curve.to_f64();
+    let rounded_curve = curve.to_f64_for_bounds();
     let range = [lo, hi].map(N::rounded);
     let mut rounded = pieces(&rounded_curve, range);
     let whole = rounded.iter().fold(Aabb::EMPTY, |b, p| b.hull(&p.bounds));

@@ -7,7 +7,8 @@ use super::elliptic_surface::{EllipticCone, EllipticCylinder};
 use super::frame::Frame;
 use super::quadric_curve::{Along, Height, QuadricCurve, Ruled, Sweep};
 use super::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
-use super::torus_curve::{TorusCurve, TorusCurveSegment};
+use super::torus_curve::{SegmentEquation, TorusCurve, TorusCurveSegment};
+use crate::number::double_double::F106;
 use crate::number::float::Float;
 
 impl<N: Float> Frame<N> {
@@ -107,6 +108,15 @@ impl<N: Float> BivariateTrigPoly<N> {
 }
 
 impl<N: Float> Curve<N> {
+    /// The curve rounded to f64 for bounds that are enlarged by more than rounding moves it: on a torus
+    /// without F in extended precision.
+    pub(super) fn to_f64_for_bounds(&self) -> Curve {
+        match self {
+            Self::Toric(c) => Curve::Toric(Box::new(c.to_f64_form())),
+            _ => self.to_f64(),
+        }
+    }
+
     /// The curve rounded to f64.
     pub fn to_f64(&self) -> Curve {
         match self {
@@ -209,10 +219,32 @@ impl<N: Float> Height<N> {
 }
 
 impl<N: Float> TorusCurve<N> {
+    /// The curve rounded to f64, with F in extended precision where its rounding would move the
+    /// curve.
     fn to_f64(&self) -> TorusCurve {
+        let mut curve = self.to_f64_form();
+        if N::IS_DOUBLE {
+            return curve;
+        }
+        let equations: Vec<SegmentEquation> =
+            curve.segments.iter().map(|s| curve.equation(s)).collect();
+        if equations.contains(&SegmentEquation::ExtendedAngles) {
+            let form = self.form.0.map(|row| row.map(to_double_double));
+            curve.extended_form = Some(Box::new(BivariateTrigPoly(form)));
+        }
+        for (segment, equation) in curve.segments.iter_mut().zip(equations) {
+            segment.equation = equation;
+        }
+        curve
+    }
+
+    /// The curve with F rounded to f64, of which points next to a near node are only known to about the
+    /// square root of the rounding.
+    fn to_f64_form(&self) -> TorusCurve {
         TorusCurve {
             torus: self.torus.to_f64(),
             form: self.form.to_f64(),
+            extended_form: None,
             charts: self.charts.iter().map(|c| c.to_f64()).collect(),
             segments: self
                 .segments
@@ -225,6 +257,34 @@ impl<N: Float> TorusCurve<N> {
     }
 }
 
+impl TorusCurve {
+    /// The equation with which rounding does not move a segment.
+    fn equation(&self, s: &TorusCurveSegment) -> SegmentEquation {
+        let size = self.torus.major.abs() + self.torus.minor;
+        let moves = |tau: f64| {
+            let by = self.form_error(s, tau);
+            by.is_nan() || by > MOVED * size
+        };
+        match s.equation {
+            SegmentEquation::Angles if [0.0, 0.5, 1.0].into_iter().any(moves) => {
+                SegmentEquation::ExtendedAngles
+            }
+            equation => equation,
+        }
+    }
+}
+
+/// The movement of a curve by the rounding of F, relative to the rounding of its coordinates, above
+/// which F is kept in extended precision.
+const MOVED: f64 = 1024.0;
+
+/// The leading 106 bits of a number.
+fn to_double_double<N: Float>(x: N) -> F106 {
+    let high = x.rounded();
+    let low = (x - N::from_f64(high)).rounded();
+    F106::from_f64(high) + F106::from_f64(low)
+}
+
 impl<N: Float> TorusCurveSegment<N> {
     fn to_f64(self) -> TorusCurveSegment {
         TorusCurveSegment {
@@ -235,7 +295,7 @@ impl<N: Float> TorusCurveSegment<N> {
             slopes: self.slopes.map(N::rounded),
             steep: self.steep.rounded(),
             bracket: self.bracket.map(N::rounded),
-            chart: self.chart,
+            equation: self.equation,
         }
     }
 }

@@ -8,7 +8,7 @@
 use crate::geometry::curve::Circle;
 use crate::geometry::implicit_on_curve::ImplicitOnCurve;
 use crate::geometry::surface::Surface;
-use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
+use crate::geometry::torus_curve::{SegmentEquation, TorusCurve, TorusCurveSegment, wrap};
 use crate::geometry::torus_parameter::{TorusParameter, arrange};
 use crate::geometry::trigonometric::{SimpleZero, simple_zeros};
 use crate::geometry::vector::Length;
@@ -115,7 +115,7 @@ impl<N: Float> TorusCurve<N> {
         let slack = slack * (N::ONE + s.steep);
         let x = self.folded(s, theta, phi);
         let length = s.to - s.from;
-        if s.chart.is_some() {
+        if matches!(s.equation, SegmentEquation::Chart(_)) {
             let [a, b] = [s.from.min(s.to), s.from.max(s.to)];
             let reach = b - a;
             return match x >= a - reach && x <= b + reach {

@@ -4,13 +4,16 @@
 //! Notation: θ is the angle about the axis, φ that about the tube. The curve is F(θ, φ) = 0, with F
 //! a [`BivariateTrigPoly`]. It is stored as a chain of segments. Each is a graph of one angle over
 //! the other, inside a rectangle in which the slope is bounded, so that every point is one
-//! well-conditioned root. Close to a singular point the graph is that of κ over σ in a `Chart`.
+//! well-conditioned root. Close to a singular point the graph is that of κ over σ in a `Chart`. Where
+//! the gradient of F is so small that rounding F to f64 would move the curve, a curve in f64 has F in
+//! extended precision.
 
 use super::bivariate_trig_poly::{BivariateTrigPoly, Partials, Section};
 use super::blow_up::{Chart, DEGREE};
 use super::surface::Torus;
 use super::torus_parameter::{TorusParameter, arrange};
 use crate::number::bisection::bisect;
+use crate::number::double_double::F106;
 use crate::number::float::{Analytic, Float};
 use crate::number::interval::Interval;
 use crate::number::jet::{Jet, JetScalar};
@@ -33,9 +36,19 @@ pub(crate) struct TorusCurveSegment<N: Float = f64> {
     pub steep: N,
     /// The range of the other angle in which no other part of the curve lies.
     pub bracket: [N; 2],
-    /// The index, into the curve's charts, of the chart of the segment's coordinates; `None` if
-    /// these are angles.
-    pub chart: Option<usize>,
+    /// The equation of the graph.
+    pub equation: SegmentEquation,
+}
+
+/// The equation of which a segment is a root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SegmentEquation {
+    /// F in the angles.
+    Angles,
+    /// F in the angles, in extended precision.
+    ExtendedAngles,
+    /// F about a singular point, in the curve's chart of this index.
+    Chart(usize),
 }
 
 /// A branch of F(θ, φ) = 0 on a torus. Its parameter advances by one for each segment.
@@ -45,6 +58,8 @@ pub struct TorusCurve<N: Float = f64> {
     pub(crate) torus: Torus<N>,
     /// F.
     pub(crate) form: BivariateTrigPoly<N>,
+    /// F in extended precision, if a segment needs it.
+    pub(crate) extended_form: Option<Box<BivariateTrigPoly<F106>>>,
     /// F about the singular points, for each branch.
     pub(crate) charts: Vec<Chart<N>>,
     /// The chain.
@@ -57,6 +72,11 @@ pub struct TorusCurve<N: Float = f64> {
 #[derive(Clone, Copy)]
 enum Form<'a, N: Float = f64> {
     Angles(&'a BivariateTrigPoly<N>, TorusParameter),
+    ExtendedAngles {
+        extended: &'a BivariateTrigPoly<F106>,
+        rounded: &'a BivariateTrigPoly<N>,
+        axis: TorusParameter,
+    },
     Chart(&'a Chart<N>),
 }
 
@@ -113,6 +133,7 @@ impl<N: Float> Form<'_, N> {
             Self::Angles(form, axis) => {
                 Fixed::Angle(form.section(*axis == TorusParameter::Around, x))
             }
+            Self::ExtendedAngles { rounded, axis, .. } => Form::Angles(rounded, *axis).fixed(x),
             Self::Chart(chart) => Fixed::Chart(chart.section(x)),
         }
     }
@@ -120,6 +141,12 @@ impl<N: Float> Form<'_, N> {
     fn partials(&self, x: N, y: N) -> Partials<N> {
         match self {
             Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::ExtendedAngles { extended, axis, .. } => {
+                let at = |a: N, b: N| extended.partials(extend(a), extend(b));
+                run_along(*axis, x, y, |a, b| {
+                    at(a, b).map(|c| N::from_f64(c.rounded()))
+                })
+            }
             Self::Chart(chart) => chart.partials(x, y),
         }
     }
@@ -127,9 +154,22 @@ impl<N: Float> Form<'_, N> {
     fn partials_over(&self, x: Interval<N>, y: Interval<N>) -> Partials<Interval<N>> {
         match self {
             Self::Angles(form, axis) => run_along(*axis, x, y, |a, b| form.partials(a, b)),
+            Self::ExtendedAngles { rounded, axis, .. } => {
+                // Second derivatives have four times the coefficients.
+                let error = N::from_f64(4.0) * rounded.bound() * N::EPSILON;
+                let error = Interval::new(-error, error);
+                run_along(*axis, x, y, |a, b| {
+                    rounded.partials(a, b).map(|c| c + error)
+                })
+            }
             Self::Chart(chart) => chart.partials_over(x, y),
         }
     }
+}
+
+/// An f64 in extended precision.
+fn extend<N: Float>(x: N) -> F106 {
+    F106::from_f64(x.rounded())
 }
 
 /// The partial derivatives, with the running angle as the first.
@@ -186,8 +226,26 @@ impl<N: Float> TorusCurveSegment<N> {
         }
     }
 
+    /// The segment in extended precision.
+    fn extended(&self) -> TorusCurveSegment<F106> {
+        TorusCurveSegment {
+            axis: self.axis,
+            from: extend(self.from),
+            to: extend(self.to),
+            ends: self.ends.map(extend),
+            slopes: self.slopes.map(extend),
+            steep: extend(self.steep),
+            bracket: self.bracket.map(extend),
+            equation: self.equation,
+        }
+    }
+
     /// The other angle at x.
     fn solve(&self, form: Form<'_, N>, x: N) -> N {
+        if let Form::ExtendedAngles { extended, axis, .. } = form {
+            let form = Form::Angles(extended, axis);
+            return N::from_f64(self.extended().solve(form, extend(x)).rounded());
+        }
         let start = self.hermite(x);
         let [lo, hi] = self.bracket;
         let reach = self.steep.max(N::ONE) * (self.to - self.from).abs();
@@ -271,13 +329,25 @@ struct SegmentPosition<'a, N: Float = f64> {
 
 impl<N: Float> TorusCurve<N> {
     fn chart(&self, s: &TorusCurveSegment<N>) -> Option<&Chart<N>> {
-        s.chart.and_then(|c| self.charts.get(c))
+        match s.equation {
+            SegmentEquation::Chart(index) => self.charts.get(index),
+            SegmentEquation::Angles | SegmentEquation::ExtendedAngles => None,
+        }
     }
 
     fn form(&self, s: &TorusCurveSegment<N>) -> Form<'_, N> {
-        match self.chart(s) {
-            Some(chart) => Form::Chart(chart),
-            None => Form::Angles(&self.form, s.axis),
+        let extended = match s.equation {
+            SegmentEquation::ExtendedAngles => self.extended_form.as_deref(),
+            SegmentEquation::Angles | SegmentEquation::Chart(_) => None,
+        };
+        match (self.chart(s), extended) {
+            (Some(chart), _) => Form::Chart(chart),
+            (None, Some(extended)) => Form::ExtendedAngles {
+                extended,
+                rounded: &self.form,
+                axis: s.axis,
+            },
+            (None, None) => Form::Angles(&self.form, s.axis),
         }
     }
 
@@ -393,16 +463,21 @@ impl<N: Float> TorusCurve<N> {
     }
 
     /// The error of the point at t by the rounding of F: F's rounding divided by its gradient. In a
-    /// chart of a singular point it is no larger than elsewhere: zero.
+    /// chart of a singular point and in extended precision it is no larger than elsewhere: zero.
     pub(crate) fn rounding_error(&self, t: N) -> N {
         let SegmentPosition { segment: s, tau } = self.locate(t);
-        if s.chart.is_some() {
-            return N::ZERO;
+        match s.equation {
+            SegmentEquation::Angles => self.form_error(s, tau) * N::ROUNDING,
+            SegmentEquation::ExtendedAngles | SegmentEquation::Chart(_) => N::ZERO,
         }
+    }
+
+    /// The bound of F divided by its gradient, at a fraction of a segment.
+    pub(super) fn form_error(&self, s: &TorusCurveSegment<N>, tau: N) -> N {
         let [theta, phi] = self.angles_on(s, tau);
         let p = self.form.partials(theta, phi);
         let (along, about) = (self.torus.major + self.torus.minor, self.torus.minor);
-        self.form.bound() * N::ROUNDING / (p.x / along).hypot(p.y / about)
+        self.form.bound() / (p.x / along).hypot(p.y / about)
     }
 
     /// Whether the curve has a cusp at t.

@@ -6,7 +6,7 @@ use crate::geometry::bivariate_trig_poly::BivariateTrigPoly;
 use crate::geometry::blow_up::Chart;
 use crate::geometry::singular::{BranchTangent, SingularPoint};
 use crate::geometry::surface::Torus;
-use crate::geometry::torus_curve::{TorusCurve, TorusCurveSegment, wrap};
+use crate::geometry::torus_curve::{SegmentEquation, TorusCurve, TorusCurveSegment, wrap};
 use crate::geometry::torus_grid::{Cell, Layout, Zone, grid, lines};
 use crate::geometry::torus_parameter::TorusParameter;
 use crate::geometry::tracer::Tracer;
@@ -196,7 +196,7 @@ impl<N: Float> Tracer<'_, N> {
                 slopes: [slope(p), slope(q)],
                 steep: N::from_f64(steep),
                 bracket: [cell.lo[1 - k], cell.hi[1 - k]],
-                chart: None,
+                equation: SegmentEquation::Angles,
             };
             // Close to a nearly singular point F is all rounding, and its roots are meaningless.
             if !segment.keeps_its_slope() {
@@ -318,7 +318,7 @@ fn node_segment<N: Float>(
                 slopes,
                 steep,
                 bracket: [bracket.lo, bracket.hi],
-                chart: Some(index),
+                equation: SegmentEquation::Chart(index),
             });
         }
         // The bounds of the slopes may be much larger than the slopes.
@@ -449,6 +449,7 @@ fn chain<N: Float>(
         branches.push(TorusCurve {
             torus: *torus,
             form: form.clone(),
+            extended_form: None,
             charts: charts.clone(),
             segments: links.into_iter().map(|link| link.segment).collect(),
             closed: true,

@@ -3,9 +3,10 @@
 use crate::parameters::ParameterWindow;
 use nalgebra::{Point2, Point3, Vector3};
 use premio_kernel::brep::Brep;
-use premio_kernel::brep::topology::EdgeId;
+use premio_kernel::brep::topology::{EdgeId, FaceId};
+use premio_kernel::geometry::curve::Curve;
 use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::turn;
+use premio_kernel::geometry::surface::{Surface, turn};
 use premio_kernel::geometry::torus_curve::wrap;
 use std::f64::consts::TAU;
 
@@ -35,7 +36,19 @@ const INNER: f64 = 1.0 / (1 << 16) as f64;
 const TRIED: usize = 24;
 
 impl Samples {
-    pub fn new(brep: &Brep, edges: impl Iterator<Item = EdgeId>) -> Self {
+    /// Samples of a face's edges, which show how often they turn around the surface's axis.
+    pub fn new(
+        brep: &Brep,
+        face: FaceId,
+        edges: impl Iterator<Item = EdgeId>,
+        resolution: f64,
+    ) -> Self {
+        let surface = *brep.surface(face);
+        let near_apexes = ApexSurroundings {
+            apexes: surface.apexes().collect(),
+            surface,
+            resolution,
+        };
         let sampled = |edge: EdgeId| {
             let (curve, [lo, hi]) = (brep.curve(edge), brep.range(edge));
             let breaks = curve.breaks(lo, hi);
@@ -47,8 +60,12 @@ impl Samples {
             let mut at = vec![lo, lo + inner];
             at.extend(steps.skip(1));
             at.extend([hi - inner, hi]);
+            let mut points = vec![curve.point(lo)];
+            for pair in at.windows(2) {
+                points.extend(near_apexes.samples(curve, [pair[0], pair[1]]));
+            }
             Sampled {
-                points: at.into_iter().map(|t| curve.point(t)).collect(),
+                points,
                 closed: brep.topology.edge(edge).ends.is_none(),
             }
         };
@@ -113,6 +130,56 @@ impl Samples {
         zero.into_iter().chain(middles.take(TRIED)).collect()
     }
 }
+
+/// A surface next to its apexes, where a short curve may turn by any angle.
+struct ApexSurroundings {
+    surface: Surface,
+    apexes: Vec<Point3<f64>>,
+    resolution: f64,
+}
+
+impl ApexSurroundings {
+    /// The samples of a curve after the first of two parameters, up to the second.
+    fn samples(&self, curve: &Curve, range: [f64; 2]) -> Vec<Point3<f64>> {
+        let mut points = Vec::new();
+        let mut waiting = vec![(range, NEAR_APEX)];
+        while let Some(([a, b], halvings)) = waiting.pop() {
+            let ends = [a, b].map(|t| curve.point(t));
+            if halvings > 0 && self.may_turn(ends) {
+                let middle = 0.5 * (a + b);
+                waiting.extend([([middle, b], halvings - 1), ([a, middle], halvings - 1)]);
+            } else {
+                points.push(ends[1]);
+            }
+        }
+        points
+    }
+
+    /// Whether a curve may turn unseen between two points, neither of which is at an apex: they are
+    /// far from each other compared with their distance from the apex, or have different angles and
+    /// are far from each other compared with their distance from the axis.
+    fn may_turn(&self, [p, q]: [Point3<f64>; 2]) -> bool {
+        let step = (q - p).norm();
+        let least = |away: &dyn Fn(&Point3<f64>) -> f64| away(&p).min(away(&q));
+        let is_near = |apex: &Point3<f64>| {
+            let away = least(&|x| (x - apex).norm());
+            away > self.resolution && 2.0 * step > away
+        };
+        let [u, v] = [p, q].map(|x| self.surface.parameters(&x)[0]);
+        let from_axis = |x: &Point3<f64>| {
+            let q = self.surface.frame().coordinates(x);
+            q.x.hypot(q.y)
+        };
+        let turns = || {
+            let away = least(&from_axis);
+            away > self.resolution && wrap(v - u).abs() > 0.5 * LEAP && 2.0 * step > away
+        };
+        self.apexes.iter().any(is_near) || (!self.apexes.is_empty() && turns())
+    }
+}
+
+/// The number of times that the step between two samples is halved next to an apex.
+const NEAR_APEX: u32 = 48;
 
 /// The change between consecutive samples above which an angle jumps.
 const LEAP: f64 = 1.0;

@@ -110,7 +110,7 @@ impl Cut {
             face,
             resolution,
             arcs: coedges.iter().map(|c| DirectedArc::new(brep, *c)).collect(),
-            samples: Samples::new(brep, edges),
+            samples: Samples::new(brep, face, edges, resolution),
             rings: rings.iter().map(Vec::len).collect(),
             coedges,
         };

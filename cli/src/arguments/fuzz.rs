@@ -109,10 +109,10 @@ pub enum ProfileChoice {
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
         use Profile::{
-            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, Oblique, Parts, Rounded, Tangent,
-            Wide,
+            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, NearTangent, Oblique, Parts,
+            Rounded, Tangent, Wide,
         };
-        const CHOICES: [ProfileChoice; 12] = [
+        const CHOICES: [ProfileChoice; 13] = [
             ProfileChoice::All,
             ProfileChoice::One(Grid),
             ProfileChoice::One(Near),
@@ -125,6 +125,7 @@ impl ValueEnum for ProfileChoice {
             ProfileChoice::One(Oblique),
             ProfileChoice::One(Ellipsoid),
             ProfileChoice::One(NearEllipsoid),
+            ProfileChoice::One(NearTangent),
         ];
         &CHOICES
     }

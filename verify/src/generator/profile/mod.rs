@@ -6,6 +6,7 @@ mod figures;
 mod grid;
 mod near;
 mod near_ellipsoid;
+mod near_tangent;
 mod oblique;
 mod parts;
 pub mod rounded;
@@ -45,11 +46,15 @@ pub enum Profile {
     /// Nearly equal ellipsoids, or a tree of `ellipsoid` with primitives moved, turned or grown a little.
     #[serde(rename = "near-ellipsoid")]
     NearEllipsoid,
+    /// A tree of `tangent` in which a primitive may be rotated about the contact, with primitives moved,
+    /// turned or grown a little.
+    #[serde(rename = "near-tangent")]
+    NearTangent,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -61,6 +66,7 @@ impl Profile {
         Self::Oblique,
         Self::Ellipsoid,
         Self::NearEllipsoid,
+        Self::NearTangent,
     ];
 
     /// The name, as it is written on the command line.
@@ -77,6 +83,7 @@ impl Profile {
             Self::Oblique => "oblique",
             Self::Ellipsoid => "ellipsoid",
             Self::NearEllipsoid => "near-ellipsoid",
+            Self::NearTangent => "near-tangent",
         }
     }
 
@@ -107,6 +114,9 @@ impl Profile {
             Self::NearEllipsoid => {
                 "Nearly equal ellipsoids, or a tree of `ellipsoid` with primitives moved, turned or grown a little"
             }
+            Self::NearTangent => {
+                "A tree of `tangent`, also rotated about the contact, with primitives moved, turned or grown a little"
+            }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
                 "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
@@ -131,6 +141,7 @@ impl Profile {
             Self::Oblique => oblique::model(seed),
             Self::Ellipsoid => ellipsoid::model(seed),
             Self::NearEllipsoid => near_ellipsoid::model(seed),
+            Self::NearTangent => near_tangent::model(seed),
         }
     }
 }
@@ -169,7 +180,7 @@ mod tests {
                 let leaves = tree.leaves().count();
                 let most = match profile {
                     Profile::Grid | Profile::Near => 8,
-                    Profile::Tangent => 4,
+                    Profile::Tangent | Profile::NearTangent => 4,
                     Profile::Deep => 3001,
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,

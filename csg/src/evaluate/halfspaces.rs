@@ -1,24 +1,22 @@
 //! Represents every primitive as an intersection of half spaces, or as walls around a section and
 //! the half spaces of its ends.
 
-use super::ellipsoid_side;
+mod pose;
+mod simple;
+mod swept;
+
+use self::pose::Pose;
 use super::face_hulls::FaceHull;
 use super::facets::Facets;
-use super::oblique_sides;
 use super::region::WalledRegion;
-use super::section::{Section, SectionMap};
-use super::walls::{self, Wall, WallKind};
 use crate::polyhedron::Polyhedron;
 use crate::primitive::Primitive;
 use crate::tree::{NodeId, PlacedPrimitive, Tree};
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use premio_kernel::geometry::bounds::Aabb;
-use premio_kernel::geometry::frame::Frame;
-use premio_kernel::geometry::surface::{Cone, Cylinder, Plane, Sphere, Surface, Torus};
+use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::Length;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::Compare;
-use premio_kernel::number::rational::Rational;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -135,145 +133,6 @@ pub(super) struct HalfSpaceModel<N: Float> {
     pub bounds: Aabb,
 }
 
-/// The rotation and offset of a primitive, rounded once from their exact values.
-struct Pose<'a, N: Float> {
-    placed: &'a PlacedPrimitive,
-    turn: Matrix3<N>,
-    origin: Point3<N>,
-    /// Whether the rotation is not one by quarter turns.
-    is_oblique: bool,
-}
-
-impl<'a, N: Float> Pose<'a, N> {
-    fn new(placed: &'a PlacedPrimitive) -> Self {
-        Self {
-            placed,
-            turn: placed.motion.rounded_rotation(),
-            origin: rounded_image(placed, &zero()),
-            is_oblique: !placed.motion.is_by_quarter_turns(),
-        }
-    }
-
-    /// The position of a rounded point of the primitive's frame.
-    fn rounded_point(&self, p: [N; 3]) -> Point3<N> {
-        self.origin + self.turn * Vector3::from(p)
-    }
-
-    /// The hull of a box in the primitive's frame; `None` if it is the box of space.
-    fn hull_of_box(&self, lo: [N; 3], hi: [N; 3]) -> Option<FaceHull> {
-        let corners = (0..8).map(|k| {
-            let corner = std::array::from_fn(|i| if k >> i & 1 == 0 { lo[i] } else { hi[i] });
-            self.rounded_point(corner)
-        });
-        self.is_oblique
-            .then(|| FaceHull::of_box(corners, [0, 1, 2].map(|i| self.axis(i))))
-    }
-
-    /// The hull of a polygon in the primitive's frame.
-    fn hull_of_polygon(
-        &self,
-        corners: impl Iterator<Item = [N; 3]>,
-        surface: &Surface<N>,
-    ) -> FaceHull {
-        let corners = corners.map(|corner| self.rounded_point(corner));
-        FaceHull::of_polygon(corners, &surface.frame().z)
-    }
-
-    /// The position of an exact point of the primitive's frame, rounded once.
-    fn point(&self, p: [Rational; 3]) -> Point3<N> {
-        rounded_image(self.placed, &p)
-    }
-
-    fn axis(&self, i: usize) -> Vector3<N> {
-        self.turn.column(i).into()
-    }
-
-    /// The primitive's frame moved to an exact point of it.
-    fn frame(&self, p: [Rational; 3]) -> Frame<N> {
-        Frame {
-            origin: self.point(p),
-            x: self.axis(0),
-            y: self.axis(1),
-            z: self.axis(2),
-        }
-    }
-
-    fn plane(&self, through: [Rational; 3], normal: Vector3<N>) -> Surface<N> {
-        let origin = self.point(through);
-        Surface::Plane(Plane {
-            frame: Frame::about(origin, self.turn * normal),
-        })
-    }
-
-    /// The surface of a wall.
-    fn wall(&self, wall: &Wall) -> Surface<N> {
-        let exact = &wall.coefficients;
-        let (size, tube) = (N::nearest(&exact.size), N::nearest(&exact.tube));
-        let direction = Vector3::from(exact.direction.each_ref().map(N::nearest));
-        if wall.kind == WallKind::Plane {
-            return self.plane(exact.point.clone(), direction.unit());
-        }
-        let frame = self.frame(exact.point.clone());
-        match wall.kind {
-            WallKind::Plane | WallKind::Cylinder => Surface::Cylinder(Cylinder {
-                frame,
-                radius: size,
-            }),
-            WallKind::Cone => {
-                let frame = match direction.z.is_above_zero() {
-                    true => frame,
-                    false => Frame {
-                        y: -frame.y,
-                        z: -frame.z,
-                        ..frame
-                    },
-                };
-                let length = size.hypot(N::ONE);
-                Surface::Cone(Cone {
-                    frame,
-                    sin: size / length,
-                    cos: N::ONE / length,
-                })
-            }
-            WallKind::Sphere => Surface::Sphere(Sphere {
-                frame,
-                radius: size,
-            }),
-            WallKind::Torus => Surface::Torus(Torus {
-                frame,
-                major: size,
-                minor: tube,
-            }),
-        }
-    }
-
-    /// The enclosing box of a box in the primitive's frame, to rounding.
-    fn boxed(&self, lo: [N; 3], hi: [N; 3]) -> Aabb {
-        let mid = Vector3::from_fn(|i, _| N::HALF * (lo[i] + hi[i]));
-        let half = Vector3::from_fn(|i, _| N::HALF * (hi[i] - lo[i]));
-        let centre = self.origin + self.turn * mid;
-        let reach = self.turn.map(N::abs) * half;
-        Aabb {
-            min: <[N; 3]>::from(centre - reach).map(N::below),
-            max: <[N; 3]>::from(centre + reach).map(N::above),
-        }
-    }
-}
-
-/// The position of an exact point of a primitive's frame, rounded once.
-fn rounded_image<N: Float>(placed: &PlacedPrimitive, p: &[Rational; 3]) -> Point3<N> {
-    let q = placed.motion.apply_point(p);
-    Point3::from(q.each_ref().map(N::nearest))
-}
-
-fn zero() -> [Rational; 3] {
-    [Rational::ZERO, Rational::ZERO, Rational::ZERO]
-}
-
-fn up(z: &Rational) -> [Rational; 3] {
-    [Rational::ZERO, Rational::ZERO, z.clone()]
-}
-
 impl<N: Float> HalfSpaceModel<N> {
     /// The primitives of a tree, with unmerged surfaces.
     pub fn new(tree: &Tree) -> Self {
@@ -288,93 +147,29 @@ impl<N: Float> HalfSpaceModel<N> {
 
 fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
     let pose = Pose::new(placed);
-    let mut sides = Vec::new();
-    let mut add = |surface: Surface<N>, lo: [N; 3], hi: [N; 3]| {
-        sides.push(HalfSpace {
-            surface,
-            bounds: pose.boxed(lo, hi),
-            hull: pose.hull_of_box(lo, hi),
-        });
-    };
     match &placed.primitive {
-        Primitive::Block { size } => {
-            let s = [
-                N::nearest(&size[0]),
-                N::nearest(&size[1]),
-                N::nearest(&size[2]),
-            ];
-            for i in 0..3 {
-                for high in [false, true] {
-                    add_block_side(&pose, size, &s, i, high, &mut add);
-                }
-            }
+        Primitive::Prism {
+            figure,
+            height,
+            top,
+        } => swept::prism(leaf, &pose, figure, [height, top]),
+        Primitive::Revolution { figure, angle } => {
+            swept::revolution(leaf, &pose, figure, angle.as_ref())
         }
-        Primitive::Wedge { size } => {
-            let s = [
-                N::nearest(&size[0]),
-                N::nearest(&size[1]),
-                N::nearest(&size[2]),
-            ];
-            for (i, high) in [(0, false), (1, false), (1, true), (2, false)] {
-                add_block_side(&pose, size, &s, i, high, &mut add);
-            }
-            let normal = Vector3::new(s[2], N::ZERO, s[0]).unit();
-            let through = [size[0].clone(), Rational::ZERO, Rational::ZERO];
-            add(pose.plane(through, normal), [N::ZERO; 3], s);
-        }
-        Primitive::Cylinder { radius, height } => {
-            let (r, h) = (N::nearest(radius), N::nearest(height));
-            let wall = Cylinder {
-                frame: pose.frame(zero()),
-                radius: r,
-            };
-            add(Surface::Cylinder(wall), [-r, -r, N::ZERO], [r, r, h]);
-            add_disc(&pose, &Rational::ZERO, N::ZERO, r, -N::ONE, &mut add);
-            add_disc(&pose, height, h, r, N::ONE, &mut add);
-        }
-        Primitive::Frustum { base, top, height } => {
-            add_frustum(&pose, base, top, height, &mut add);
-        }
-        Primitive::Sphere { radius } => {
-            let r = N::nearest(radius);
-            let s = Sphere {
-                frame: pose.frame(zero()),
-                radius: r,
-            };
-            add(Surface::Sphere(s), [-r; 3], [r; 3]);
-        }
-        Primitive::Torus { major, minor } => {
-            let (a, b) = (N::nearest(major), N::nearest(minor));
-            let t = Torus {
-                frame: pose.frame(zero()),
-                major: a,
-                minor: b,
-            };
-            let w = N::nearest(&(major + minor));
-            add(Surface::Torus(t), [-w, -w, -b], [w, w, b]);
-        }
-        Primitive::ObliqueFrustum { frustum } => {
-            for side in oblique_sides::sides(frustum, placed) {
-                let [lo, hi] = side.bounds.map(|corner| corner.map(N::from_f64));
-                add(side.surface, lo, hi);
-            }
-        }
-        Primitive::Ellipsoid { radii } => {
-            let reach = radii.reach().map(N::from_f64);
-            let surface = ellipsoid_side::surface(radii, placed);
-            add(surface, reach.map(|r| -r), reach);
-        }
-        Primitive::Prism { .. } | Primitive::Revolution { .. } => {
-            return sectioned(leaf, &pose);
-        }
-        Primitive::Polyhedron { polyhedron } => return faceted(leaf, &pose, polyhedron),
+        Primitive::Polyhedron { polyhedron } => faceted(leaf, &pose, polyhedron),
+        _ => convex(leaf, &pose),
     }
-    let bounds = match &placed.primitive {
-        // The wall of a cone has the box of the whole primitive.
+}
+
+/// A primitive that is the intersection of its half spaces.
+fn convex<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
+    let sides = simple::sides(pose);
+    let bounds = match &pose.placed.primitive {
         Primitive::Block { .. } | Primitive::Wedge { .. } => {
             sides.iter().fold(Aabb::EMPTY, |b, s| b.hull(&s.bounds))
         }
-        _ => sides[0].bounds,
+        // The box of the wall is that of the whole primitive.
+        _ => sides.first().map_or(Aabb::EMPTY, |wall| wall.bounds),
     };
     Solid {
         leaf,
@@ -383,110 +178,6 @@ fn solid<N: Float>(leaf: NodeId, placed: &PlacedPrimitive) -> Solid<N> {
         ends: EndRule::All,
         bounds,
         index: None,
-    }
-}
-
-/// A prism or a revolution.
-fn sectioned<N: Float>(leaf: NodeId, pose: &Pose<'_, N>) -> Solid<N> {
-    let primitive = &pose.placed.primitive;
-    let walls = walls::walls(primitive);
-    let (figure, map, heights) = match primitive {
-        Primitive::Prism {
-            figure,
-            height,
-            top,
-        } => {
-            let growth = N::nearest(&((top - Rational::ONE) / height));
-            (figure, SectionMap::Prism { growth }, Some([height, top]))
-        }
-        Primitive::Revolution { figure, .. } => (figure, SectionMap::Revolution, None),
-        _ => {
-            return Solid {
-                leaf,
-                sides: Vec::new(),
-                region: None,
-                ends: EndRule::All,
-                bounds: Aabb::EMPTY,
-                index: None,
-            };
-        }
-    };
-    let section = Section::new(figure, &walls, map, pose.turn, pose.origin);
-    let swept = |[lo, hi]: [[N; 2]; 2]| match heights {
-        Some([height, top]) => {
-            let k = N::nearest(top);
-            let low: [N; 2] = std::array::from_fn(|i| lo[i].min(lo[i] * k));
-            let high: [N; 2] = std::array::from_fn(|i| hi[i].max(hi[i] * k));
-            [
-                [low[0], low[1], N::ZERO],
-                [high[0], high[1], N::nearest(height)],
-            ]
-        }
-        None => [[-hi[0], -hi[0], lo[1]], [hi[0], hi[0], hi[1]]],
-    };
-    let mut sides: Vec<HalfSpace<N>> = Vec::with_capacity(walls.len() + 2);
-    sides.extend(walls.iter().map(|wall| {
-        let edge = &section.edges[wall.edge];
-        let surface = pose.wall(wall);
-        let [lo, hi] = swept(edge.bounds());
-        HalfSpace {
-            bounds: pose.boxed(lo, hi),
-            hull: match (heights, wall.kind) {
-                (Some([height, top]), WallKind::Plane) => {
-                    let corners = edge.swept_corners(N::nearest(height), N::nearest(top));
-                    Some(pose.hull_of_polygon(corners.into_iter(), &surface))
-                }
-                _ => pose.hull_of_box(lo, hi),
-            },
-            surface,
-        }
-    }));
-    let whole = section.bounds();
-    let [lo, hi] = swept(whole);
-    let (bounds, hull) = (pose.boxed(lo, hi), pose.hull_of_box(lo, hi));
-    let mut ends = EndRule::All;
-    match primitive {
-        Primitive::Prism { height, top, .. } => {
-            let [[x, y], [x2, y2]] = whole;
-            let at = |z: &Rational, k: N, up: N| {
-                let lo = [x * k, y * k, N::nearest(z)];
-                let hi = [x2 * k, y2 * k, N::nearest(z)];
-                HalfSpace {
-                    surface: pose.plane(
-                        [Rational::ZERO, Rational::ZERO, z.clone()],
-                        Vector3::z() * up,
-                    ),
-                    bounds: pose.boxed(lo, hi),
-                    hull: pose.hull_of_box(lo, hi),
-                }
-            };
-            sides.push(at(&Rational::ZERO, N::ONE, -N::ONE));
-            if !top.is_zero() {
-                sides.push(at(height, N::nearest(top), N::ONE));
-            }
-        }
-        Primitive::Revolution { angle, .. } => {
-            if angle.as_ref().is_some_and(|angle| angle.is_reflex()) {
-                ends = EndRule::Any;
-            }
-            sides.extend(walls::end_normals(primitive).iter().map(|normal| {
-                let normal = Vector3::from(normal.each_ref().map(N::nearest));
-                HalfSpace {
-                    surface: pose.plane(zero(), normal.unit()),
-                    bounds,
-                    hull: hull.clone(),
-                }
-            }));
-        }
-        _ => {}
-    }
-    Solid {
-        leaf,
-        index: index(&sides),
-        sides,
-        region: Some(WalledRegion::Section(section)),
-        ends,
-        bounds,
     }
 }
 
@@ -514,83 +205,6 @@ fn faceted<N: Float>(leaf: NodeId, pose: &Pose<'_, N>, polyhedron: &Polyhedron) 
         sides,
         region: Some(WalledRegion::Facets(facets)),
         ends: EndRule::All,
-    }
-}
-
-type Add<'a, N> = dyn FnMut(Surface<N>, [N; 3], [N; 3]) + 'a;
-
-fn add_block_side<N: Float>(
-    pose: &Pose<'_, N>,
-    size: &[Rational; 3],
-    s: &[N; 3],
-    i: usize,
-    high: bool,
-    add: &mut Add<'_, N>,
-) {
-    let (mut lo, mut hi) = ([N::ZERO; 3], *s);
-    let mut through = zero();
-    let mut normal = Vector3::zeros();
-    if high {
-        through[i] = size[i].clone();
-        lo[i] = s[i];
-        normal[i] = N::ONE;
-    } else {
-        hi[i] = N::ZERO;
-        normal[i] = -N::ONE;
-    }
-    add(pose.plane(through, normal), lo, hi);
-}
-
-fn add_disc<N: Float>(
-    pose: &Pose<'_, N>,
-    at: &Rational,
-    z: N,
-    r: N,
-    sign: N,
-    add: &mut Add<'_, N>,
-) {
-    add(
-        pose.plane(up(at), Vector3::z() * sign),
-        [-r, -r, z],
-        [r, r, z],
-    );
-}
-
-fn add_frustum<N: Float>(
-    pose: &Pose<'_, N>,
-    base: &Rational,
-    top: &Rational,
-    height: &Rational,
-    add: &mut Add<'_, N>,
-) {
-    let (b, t, h) = (N::nearest(base), N::nearest(top), N::nearest(height));
-    // The apex, where the radius becomes zero, lies above or below.
-    let apex = height.clone() * base.clone() / (base.clone() - top.clone());
-    let slope = N::nearest(&(base.clone() - top.clone()));
-    let length = slope.hypot(h);
-    let f = pose.frame(up(&apex));
-    let frame = if slope.is_above_zero() {
-        Frame {
-            x: f.x,
-            y: -f.y,
-            z: -f.z,
-            ..f
-        }
-    } else {
-        f
-    };
-    let cone = Cone {
-        frame,
-        sin: slope.abs() / length,
-        cos: h / length,
-    };
-    let r = b.max(t);
-    add(Surface::Cone(cone), [-r, -r, N::ZERO], [r, r, h]);
-    if b.is_above_zero() {
-        add_disc(pose, &Rational::ZERO, N::ZERO, b, -N::ONE, add);
-    }
-    if t.is_above_zero() {
-        add_disc(pose, height, h, t, N::ONE, add);
     }
 }
 

@@ -10,7 +10,8 @@ use crate::geometry::elliptic_surface::EllipticCone;
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cone, Plane, Surface, Torus};
 use crate::geometry::surface_pair::{PairMeasure, SurfacePair};
-use crate::geometry::trace::{BranchPosition, trace};
+use crate::geometry::torus_curve::TorusCurve;
+use crate::geometry::trace::{BranchPosition, Singular, trace};
 use crate::geometry::unresolved::Unresolved;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
@@ -107,94 +108,153 @@ struct BranchPart<N: Float = f64> {
     range: [N; 2],
 }
 
+/// The intersection of a torus with another surface, by tracing the zero set of its polynomial on the
+/// torus.
 fn traced<N: Float>(
     t: &Torus<N>,
     other: &Surface<N>,
     form: &BivariateTrigPoly<N>,
     predicates: &Predicates,
 ) -> Result<SurfaceIntersection<N>, IntersectionError> {
-    let own = Surface::Torus(*t);
-    let is_on_curve =
-        |&[theta, phi]: &[N; 2]| is_on_zero_set(other, &own.point(theta, phi), predicates);
-    let traced = trace(t, form, predicates.resolution(), &is_on_curve)?;
+    let pair = TracedPair {
+        own: Surface::Torus(*t),
+        torus: t,
+        other,
+        predicates,
+    };
+    let is_on_curve = |angles: &[N; 2]| pair.is_on_zero_set(angles);
+    let mut traced = trace(t, form, predicates.resolution(), &is_on_curve)?;
     let mut singular = traced.singular.iter().map(|s| s.angles);
     if let Some(angles) = singular.find(|angles| !is_on_curve(angles)) {
         return Err(Unresolved::at(angles).into());
     }
+    pair.classify_near_misses(&traced.close);
     let mut meeting = SurfaceIntersection::nothing();
-    for [theta, phi] in &traced.close {
-        let p = own.point(*theta, *phi);
-        if t.sheet_level([p.x, p.y, p.z]) < -predicates.resolution::<N>() {
-            continue;
-        }
-        predicates.classify_at_point("torus touches surface", other.distance(&p), place(&p));
+    let branches = std::mem::take(&mut traced.branches).into_iter().enumerate();
+    let parts: Vec<Vec<BranchPart<N>>> = branches
+        .map(|(index, branch)| {
+            let passes = traced.singular.iter_mut().flat_map(|s| &mut s.on);
+            let passes = passes.filter(|on| on.branch == index).map(|on| &mut on.t);
+            pair.add_branch(branch, passes.collect(), &mut meeting)
+        })
+        .collect();
+    for singular in &traced.singular {
+        pair.add_node(singular, &parts, &mut meeting);
     }
-    // The form vanishes on both nappes of a cone and on both sheets of a torus. Each branch is
-    // clipped to the surfaces' own.
-    let mut parts: Vec<Vec<BranchPart<N>>> = Vec::new();
-    let mut singular = traced.singular;
-    for (b, branch) in traced.branches.into_iter().enumerate() {
-        let toric = Curve::Toric(Box::new(branch));
-        let passes = singular.iter_mut().flat_map(|s| &mut s.on);
-        let passes = passes.filter(|on| on.branch == b).map(|on| &mut on.t);
-        let mut passes: Vec<&mut N> = passes.collect();
-        let curve = match circle_of(&toric, t, other, predicates) {
-            Some(circle) => {
-                for at in &mut passes {
-                    **at = circle.parameter(&toric.point(**at));
-                }
-                circle
+    pair.add_apexes(&mut meeting);
+    Ok(meeting)
+}
+
+/// A torus and a surface that are intersected by tracing.
+struct TracedPair<'a, N: Float> {
+    own: Surface<N>,
+    torus: &'a Torus<N>,
+    other: &'a Surface<N>,
+    predicates: &'a Predicates,
+}
+
+impl<N: Float> TracedPair<'_, N> {
+    /// Whether the point of the torus at two angles lies on the zero set of the other surface's
+    /// polynomial, within the resolution. Next to an apex the polynomial is the square of a distance: it
+    /// is below the resolution at points that are far from both nappes.
+    fn is_on_zero_set(&self, &[theta, phi]: &[N; 2]) -> bool {
+        let point = self.own.point(theta, phi);
+        let is_on = |sheet: &Surface<N>| self.predicates.within(sheet.distance(&point));
+        match other_sheet(self.other) {
+            Some(second) => is_on(self.other) || is_on(&second),
+            None => true,
+        }
+    }
+
+    /// Records the points at which the surfaces touch or nearly touch.
+    fn classify_near_misses(&self, close: &[[N; 2]]) {
+        for [theta, phi] in close {
+            let p = self.own.point(*theta, *phi);
+            if self.torus.sheet_level([p.x, p.y, p.z]) < -self.predicates.resolution::<N>() {
+                continue;
             }
-            None => toric,
-        };
-        let passes: Vec<N> = passes.into_iter().map(|at| *at).collect();
+            let distance = self.other.distance(&p);
+            self.predicates
+                .classify_at_point("torus touches surface", distance, place(&p));
+        }
+    }
+
+    /// Adds the parts of a traced branch that lie on both surfaces: the form vanishes on both nappes of a
+    /// cone and on both sheets of a torus. A branch that is a circle becomes one, and the parameters
+    /// `passes` of singular points become those of the circle.
+    fn add_branch(
+        &self,
+        branch: TorusCurve<N>,
+        passes: Vec<&mut N>,
+        meeting: &mut SurfaceIntersection<N>,
+    ) -> Vec<BranchPart<N>> {
+        let toric = Curve::Toric(Box::new(branch));
+        let circle = circle_of(&toric, self.torus, self.other, self.predicates);
+        let mut passed = Vec::with_capacity(passes.len());
+        for at in passes {
+            if let Some(circle) = &circle {
+                *at = circle.parameter(&toric.point(*at));
+            }
+            passed.push(*at);
+        }
+        let curve = circle.unwrap_or(toric);
         let whole = [N::ZERO, curve.period().unwrap_or(N::ZERO)];
+        let surfaces = [&self.own, self.other];
         let mut kept = Vec::new();
-        for range in parts_on_both(&curve, whole, [&own, other], predicates) {
-            let range = range.map(|end| at_pass(&curve, end, &passes, predicates));
+        for range in parts_on_both(&curve, whole, surfaces, self.predicates) {
+            let range = range.map(|end| at_pass(&curve, end, &passed, self.predicates));
             kept.push(BranchPart {
                 branch: meeting.branches.len(),
                 range,
             });
-            let (curve, closed) = (curve.clone(), range == whole);
             meeting.branches.push(Branch {
-                curve,
+                curve: curve.clone(),
                 range,
-                closed,
+                closed: range == whole,
                 tangent: false,
             });
         }
-        parts.push(kept);
+        kept
     }
-    for s in singular {
-        let point = own.point(s.angles[0], s.angles[1]);
+
+    /// Adds the node at a singular point that lies on both surfaces.
+    fn add_node(
+        &self,
+        singular: &Singular<N>,
+        parts: &[Vec<BranchPart<N>>],
+        meeting: &mut SurfaceIntersection<N>,
+    ) {
+        let [theta, phi] = singular.angles;
+        let point = self.own.point(theta, phi);
         let lies_on =
-            |s: &Surface<N>| other_sheet(s).is_none() || predicates.within(s.distance(&point));
-        if !lies_on(&own) || !lies_on(other) {
-            continue;
+            |s: &Surface<N>| other_sheet(s).is_none() || self.predicates.within(s.distance(&point));
+        if !lies_on(&self.own) || !lies_on(self.other) {
+            return;
         }
         let mut on = Vec::new();
-        for BranchPosition { branch, t: at } in s.on {
-            for part in &parts[branch] {
-                let (branch, [lo, hi]) = (part.branch, part.range);
+        for &BranchPosition { branch, t: at } in &singular.on {
+            for &BranchPart { branch, range } in &parts[branch] {
                 // A part may extend beyond the period in which it starts.
                 let cycle = meeting.branches[branch].curve.period().unwrap_or(N::ZERO);
                 let whole = meeting.branches[branch].closed;
                 let passes = [at, at + cycle].into_iter().take(2 - usize::from(whole));
-                let passes = passes.filter(|&t| t >= lo && t <= hi);
+                let passes = passes.filter(|&t| t >= range[0] && t <= range[1]);
                 on.extend(passes.map(|t| BranchPosition { branch, t }));
             }
         }
         meeting.nodes.push(Node { point, on });
     }
-    for [a, b] in [[&own, other], [other, &own]] {
-        let common = a.apexes().filter(|p| predicates.within(b.distance(p)));
-        meeting.nodes.extend(common.map(|point| Node {
-            point,
-            on: Vec::new(),
-        }));
+
+    /// Adds the apexes of each surface that lie on the other.
+    fn add_apexes(&self, meeting: &mut SurfaceIntersection<N>) {
+        for [a, b] in [[&self.own, self.other], [self.other, &self.own]] {
+            let apexes = a.apexes().filter(|p| self.predicates.within(b.distance(p)));
+            meeting.nodes.extend(apexes.map(|point| Node {
+                point,
+                on: Vec::new(),
+            }));
+        }
     }
-    Ok(meeting)
 }
 
 /// The other nappe of a cone, or the other sheet of a torus: the implicit polynomial of the surface
@@ -224,21 +284,6 @@ fn other_sheet<N: Float>(surface: &Surface<N>) -> Option<Surface<N>> {
         | Surface::Sphere(_)
         | Surface::EllipticCylinder(_)
         | Surface::Ellipsoid(_) => None,
-    }
-}
-
-/// Whether a point lies on the zero set of the surface's polynomial, within the resolution. Next to
-/// an apex the polynomial is the square of a distance: it is below the resolution at points that
-/// are far from both nappes.
-fn is_on_zero_set<N: Float>(
-    surface: &Surface<N>,
-    point: &Point3<N>,
-    predicates: &Predicates,
-) -> bool {
-    let is_on = |sheet: &Surface<N>| predicates.within(sheet.distance(point));
-    match other_sheet(surface) {
-        Some(other) => is_on(surface) || is_on(&other),
-        None => true,
     }
 }
 

@@ -154,7 +154,7 @@ class Table:
         self.searches = searches
         self.right = numpy.array([s.right for s in searches])
         self.offsets = [
-            numpy.array([[o["wholes"], o["edges"]] for o in s.measures["offsets"]]).reshape(-1, 2)
+            numpy.array([[o["offset"], o["roughness"]] for o in s.measures["offsets"]]).reshape(-1, 2)
             for s in searches
         ]
         # The offsets of all searches in one array, with the search of each.
@@ -171,7 +171,7 @@ class Table:
 
     def __getattr__(self, name: str) -> numpy.ndarray:
         # Columns are made once.
-        values = self.shape(name) if name in ("told", "untold") else self.column(name)
+        values = self.shape(name) if name in ("determined", "undetermined") else self.column(name)
         setattr(self, name, values)
         return values
 
@@ -186,9 +186,9 @@ def rough(w: Weights, t: Table) -> numpy.ndarray:
 
 
 def systematic_offset(w: Weights, t: Table) -> numpy.ndarray:
-    wholes, edges = (t.all_offsets + w["offset_floor"]).T
+    offset, roughness = (t.all_offsets + w["offset_floor"]).T
     bound = w["max_systematic_offset"]
-    times = numpy.clip(numpy.log(wholes / edges), -bound, bound)
+    times = numpy.clip(numpy.log(offset / roughness), -bound, bound)
     return numpy.bincount(t.owner, times, len(t.searches)) / t.counts
 
 
@@ -229,7 +229,7 @@ def odds(w: Weights, t: Table) -> numpy.ndarray:
 
 
 def whole(w: Weights, t: Table) -> numpy.ndarray:
-    return w["subpart_odds"] + t.told / w["subpart_shape"] + t.untold
+    return w["subpart_odds"] + t.determined / w["subpart_shape"] + t.undetermined
 
 
 def probability(w: Weights, t: Table) -> numpy.ndarray:

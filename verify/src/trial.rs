@@ -148,7 +148,7 @@ pub struct TrialOutcome {
     /// The number of close decisions.
     pub close_calls: usize,
     /// The undetermined checks.
-    #[serde(default, rename = "untold")]
+    #[serde(default)]
     pub undetermined: Vec<String>,
     /// The duration of reading and evaluating the tree, without the checks, in seconds.
     #[serde(default)]

@@ -47,7 +47,7 @@ impl<'a> Checked<'a> {
             finding: match check.finding {
                 Finding::Passes => "holds",
                 Finding::Fails => "fails",
-                Finding::Undetermined => "untold",
+                Finding::Undetermined => "undetermined",
             },
             detail: &check.detail,
         };

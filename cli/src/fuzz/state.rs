@@ -82,7 +82,7 @@ pub struct Tally {
     /// The wrong ones, by kind; one tree may be of several.
     pub faults: BTreeMap<FailureKind, Finds>,
     /// Those with an undetermined check.
-    #[serde(default, rename = "untold")]
+    #[serde(default)]
     pub undetermined: Finds,
     /// The number of trees with close calls.
     pub close_trees: u64,

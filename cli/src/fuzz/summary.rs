@@ -42,7 +42,6 @@ struct Part {
     refusals: Vec<Kind>,
     faults: Vec<Kind>,
     /// The trees with an undetermined check.
-    #[serde(rename = "untold")]
     undetermined: Vec<Kind>,
     close_calls: CloseCalls,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -218,7 +217,7 @@ impl fmt::Display for RunSummary {
         for (profile, part) in &self.profiles {
             list(f, *profile, "wrong", &part.faults)?;
             list(f, *profile, "refused", &part.refusals)?;
-            list(f, *profile, "untold", &part.undetermined)?;
+            list(f, *profile, "undetermined", &part.undetermined)?;
             if let Some(against) = &part.against {
                 list(f, *profile, "the program", &against.faults)?;
                 list(f, *profile, "refused by the program", &against.refusals)?;

@@ -46,8 +46,8 @@ fn terms(best: &PartMatch, report: &MatchReport) -> String {
          vertex",
         best.odds,
         best.rms,
-        best.systematic_offset.wholes,
-        best.systematic_offset.edges,
+        best.systematic_offset.offset,
+        best.systematic_offset.roughness,
         report.straightness,
         100.0 * best.inside(),
         best.shape.determined,
@@ -97,7 +97,7 @@ fn feature_line(feature: &FeatureReport) -> String {
     };
     let residual = feature.offset.zip(feature.systematic_offset);
     let residual = residual.map_or(String::new(), |(offset, off)| {
-        let rms = off.wholes.hypot(off.edges);
+        let rms = off.offset.hypot(off.roughness);
         format!(", offset {offset:+.2} px when assigned, residual {rms:.2} px at the pose")
     });
     format!(

@@ -91,7 +91,6 @@ pub struct FeatureReport {
     /// The mean signed distance of its edge from it, in pixels, when the edge was assigned.
     pub offset: Option<f64>,
     /// The residual of the edge at the pose, as root mean squares in pixels.
-    #[serde(rename = "astray")]
     pub systematic_offset: Option<SystematicOffset>,
     /// The ends of its segments.
     pub segments: Vec<[[f64; 2]; 2]>,
@@ -182,7 +181,6 @@ pub struct MatchReport {
     pub shape: Option<ShapeEvidence>,
     /// The systematic offset of features and the roughness of their edges. Another thing that is
     /// like the part has a greater systematic offset.
-    #[serde(rename = "astray")]
     pub systematic_offset: Option<SystematicOffset>,
     /// From 0 to 1: how much of what is found runs along the picture's rows and columns, as in a
     /// drawing or a frame. It is 1 if all of it does, some along either.

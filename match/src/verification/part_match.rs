@@ -72,7 +72,7 @@ impl FeaturePair {
     /// `ADJACENT`.
     pub(crate) fn is_missed(&self) -> bool {
         let found = self.found.as_ref();
-        found.is_none_or(|f| f.systematic_offset.wholes > ADJACENT)
+        found.is_none_or(|f| f.systematic_offset.offset > ADJACENT)
     }
 }
 

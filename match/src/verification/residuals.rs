@@ -21,9 +21,9 @@ const FREE: [f64; 2] = [6.0, 0.25];
 #[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct SystematicOffset {
     /// The systematic offset.
-    pub wholes: f64,
+    pub offset: f64,
     /// The roughness.
-    pub edges: f64,
+    pub roughness: f64,
 }
 
 /// The residuals of a part's features.
@@ -56,9 +56,9 @@ impl SystematicOffsets {
 #[derive(Clone, Copy)]
 struct WeightedSquares {
     /// Of the systematic offset.
-    wholes: f64,
+    offset: f64,
     /// Of the roughness.
-    edges: f64,
+    roughness: f64,
     /// The sum of weights.
     weight: f64,
 }
@@ -72,13 +72,13 @@ impl WeightedSquares {
         });
         let seen: Vec<SeenPull<'_>> = seen.collect();
         let mut sums = Self {
-            wholes: 0.0,
-            edges: 0.0,
+            offset: 0.0,
+            roughness: 0.0,
             weight: 0.0,
         };
         for (SeenPull { off, pull }, left) in seen.iter().zip(left(&seen)?) {
-            sums.wholes += pull.weight * (off - left) * (off - left);
-            sums.edges += pull.weight * left * left;
+            sums.offset += pull.weight * (off - left) * (off - left);
+            sums.roughness += pull.weight * left * left;
             sums.weight += pull.weight;
         }
         (sums.weight > 0.0).then_some(sums)
@@ -86,8 +86,8 @@ impl WeightedSquares {
 
     fn plus(self, other: Self) -> Self {
         Self {
-            wholes: self.wholes + other.wholes,
-            edges: self.edges + other.edges,
+            offset: self.offset + other.offset,
+            roughness: self.roughness + other.roughness,
             weight: self.weight + other.weight,
         }
     }
@@ -95,8 +95,8 @@ impl WeightedSquares {
     /// The root mean squares.
     fn root(self) -> SystematicOffset {
         SystematicOffset {
-            wholes: (self.wholes / self.weight).sqrt(),
-            edges: (self.edges / self.weight).sqrt(),
+            offset: (self.offset / self.weight).sqrt(),
+            roughness: (self.roughness / self.weight).sqrt(),
         }
     }
 }
@@ -173,24 +173,24 @@ mod tests {
     #[test]
     fn a_line_next_to_its_edge_has_a_systematic_offset_and_a_rough_one_has_none() {
         let adjacent = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0)));
-        assert_relative_eq!(adjacent.wholes, 2.0, epsilon = 0.01);
-        assert!(adjacent.edges < 0.01, "{adjacent:?}");
+        assert_relative_eq!(adjacent.offset, 2.0, epsilon = 0.01);
+        assert!(adjacent.roughness < 0.01, "{adjacent:?}");
         // The edges alternate between both sides. The fitted line removes only the little that the
         // ends do not balance.
         let rough = of(pulls(|t| {
             let side = (f64::consts::PI * 64.0 * t).cos();
             ([64.0 * t, 0.0], [0.0, 1.0], side)
         }));
-        assert!(rough.wholes < 0.05, "{rough:?}");
-        assert_relative_eq!(rough.edges, 1.0, epsilon = 0.01);
+        assert!(rough.offset < 0.05, "{rough:?}");
+        assert_relative_eq!(rough.roughness, 1.0, epsilon = 0.01);
     }
 
     #[test]
     fn a_tilted_line_has_a_systematic_offset() {
         // The offset runs from -1 to 1: its root mean square is 1/√3.
         let tilted = of(pulls(|t| ([64.0 * t, 0.0], [0.0, 1.0], 2.0 * t - 1.0)));
-        assert_relative_eq!(tilted.wholes, 3.0_f64.sqrt().recip(), epsilon = 0.02);
-        assert!(tilted.edges < 0.02, "{tilted:?}");
+        assert_relative_eq!(tilted.offset, 3.0_f64.sqrt().recip(), epsilon = 0.02);
+        assert!(tilted.roughness < 0.02, "{tilted:?}");
     }
 
     #[test]
@@ -202,10 +202,10 @@ mod tests {
             }))
         };
         for found in [circle(|x, _| x), circle(|x, y| x + y), circle(|_, _| 1.0)] {
-            assert!(found.edges < 0.1 * found.wholes, "{found:?}");
+            assert!(found.roughness < 0.1 * found.offset, "{found:?}");
         }
         // Another ratio of axes is not a similarity, so it counts as roughness.
         let squeezed = circle(|x, y| x * x - y * y);
-        assert!(squeezed.wholes < 0.1 * squeezed.edges, "{squeezed:?}");
+        assert!(squeezed.offset < 0.1 * squeezed.roughness, "{squeezed:?}");
     }
 }

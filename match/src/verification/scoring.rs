@@ -142,8 +142,9 @@ impl ScoreWeights {
     fn systematic_offset(&self, found: &ScoreMeasures) -> f64 {
         let bound = self.max_systematic_offset;
         let times = found.offsets.iter().map(|off| {
-            let [wholes, edges] = [off.wholes, off.edges].map(|off| off + self.offset_floor);
-            (wholes / edges).ln().clamp(-bound, bound)
+            let [offset, roughness] =
+                [off.offset, off.roughness].map(|off| off + self.offset_floor);
+            (offset / roughness).ln().clamp(-bound, bound)
         });
         times.sum::<f64>() / found.offsets.len().max(1) as f64
     }

@@ -44,7 +44,6 @@ const ABOUT: f64 = 8.0;
 pub struct ShapeEvidence {
     /// The Occam factor: the logarithm of the number of shapes that a thing of the kind can have
     /// over the number of those that agree with what is found.
-    #[serde(rename = "told")]
     pub determined: f64,
     /// The logarithm of how much better the likeliest of these shapes fits than the part.
     pub denied: f64,
@@ -56,7 +55,6 @@ pub struct ShapeEvidence {
     pub carriers: f64,
     /// Of the other carriers: the log-likelihood that their features are missed or lie outside the
     /// image.
-    #[serde(rename = "untold")]
     pub undetermined: f64,
 }
 

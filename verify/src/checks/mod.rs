@@ -393,14 +393,14 @@ impl fmt::Display for CheckReport {
             writeln!(f, "{check}")?;
         }
         let all = self.checks.len();
-        let [failed, untold] =
+        let [failed, undetermined] =
             [Finding::Fails, Finding::Undetermined].map(|k| self.checks_with(k).count());
-        match (failed, untold) {
+        match (failed, undetermined) {
             (0, 0) => writeln!(f, "all {all} checks hold"),
             (_, 0) => writeln!(f, "{failed} of {all} checks failed"),
             _ => writeln!(
                 f,
-                "{failed} of {all} checks failed, {untold} are undetermined"
+                "{failed} of {all} checks failed, {undetermined} are undetermined"
             ),
         }
     }

@@ -34,6 +34,8 @@ KNOWN = {
     "cone-around-a-ball-with-a-lip-of-1e-9.glb": SLIVER,
     "cone-around-a-ball-with-a-lip-of-1e-9.3mf": SLIVER,
     "bored-block-far-from-origin.stl": SINGLE,
+    "cone-apex-1e-8-from-a-ring.glb": SINGLE,
+    "cone-apex-6e-10-from-a-ring.glb": SINGLE,
     "cone-rim-a-billionth-into-a-ring.stl": SINGLE,
     "cones-whose-branches-pass-by-1e-9.glb": SINGLE,
     "coplanar-faces-tilted-by-1e-7.stl": SLIVER,

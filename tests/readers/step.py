@@ -33,6 +33,7 @@ KNOWN = {
     "torus-lying-on-block": PARTED,
     "ball-in-a-tube-off-by-1e-6": "refused: the loops of a face 1e-6 apart",
     "bored-block-far-from-origin": "1e9 from the origin, the reader turns the solid inside out",
+    "cone-apex-1e-8-from-a-ring": "refused: a face 1.6e-8 wide",
     "cone-around-a-ball-with-a-lip-of-1e-9": "refused: two edges of a face 1e-9 apart",
     "cone-rim-a-billionth-into-a-ring": "refused: an edge 1.6e-9 long",
     "cones-whose-branches-pass-by-1e-9": "refused: a face 7e-10 wide",

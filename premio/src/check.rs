@@ -14,6 +14,8 @@ pub(crate) fn checked(tree: &Tree, evaluation: &Evaluation, rays: usize) -> Chec
 pub(crate) enum ConfirmedContours {
     Confirmed(Box<Contours>),
     Contradicted(String),
+    /// The part is thinner on average than the resolution of views.
+    TooThin,
 }
 
 /// The contours of a solid. Where f64 does not give its boundary, rays confirm them.
@@ -27,6 +29,9 @@ pub(crate) fn confirmed_contours(
         return contours(resolution)
             .map(Box::new)
             .map(ConfirmedContours::Confirmed);
+    }
+    if evaluation.is_too_thin_for_views() {
+        return Ok(ConfirmedContours::TooThin);
     }
     let seen = contours(evaluation.rounded_view_resolution())?;
     Ok(match Checker::new(tree, evaluation).contradiction(&seen) {

@@ -85,6 +85,17 @@ pub enum Error {
         /// What they contradict.
         detail: String,
     },
+    /// The part is thinner than views resolve.
+    #[error(
+        "the part is {thickness:.3e} thick on average, and views resolve {resolution:.3e}: the boundary \
+         is known, but it has no view"
+    )]
+    TooThin {
+        /// Twice the volume over the area.
+        thickness: f64,
+        /// The resolution of views.
+        resolution: f64,
+    },
     /// A camera is invalid.
     #[error(transparent)]
     Camera(#[from] CameraError),

@@ -58,6 +58,12 @@ impl View {
             ConfirmedContours::Contradicted(detail) => {
                 return Err(Error::UncertainView { detail });
             }
+            ConfirmedContours::TooThin => {
+                return Err(Error::TooThin {
+                    thickness: solid.evaluation().mean_thickness(),
+                    resolution: solid.evaluation().rounded_view_resolution(),
+                });
+            }
         };
         Ok(Self(Arc::new(ViewData {
             solid: solid.clone(),

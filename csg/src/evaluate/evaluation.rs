@@ -72,6 +72,27 @@ impl Evaluation {
             .max(RELATIVE_RESOLUTION * self.bounds.diagonal())
     }
 
+    /// The mean thickness of the part, of its thinnest body where bodies are apart: twice the volume over
+    /// the area.
+    pub fn mean_thickness(&self) -> f64 {
+        match &self.integrals {
+            Integrals::Components(bodies) => {
+                let each = bodies.iter().map(Self::mean_thickness);
+                each.fold(f64::INFINITY, f64::min)
+            }
+            _ => {
+                let Mass { volume, area, .. } = self.mass();
+                2.0 * volume / area
+            }
+        }
+    }
+
+    /// Whether views in f64 cannot separate the two sides of the part.
+    pub fn is_too_thin_for_views(&self) -> bool {
+        let resolution = self.rounded_view_resolution();
+        self.view_resolution.is_none() && self.mean_thickness().is_short_of(resolution)
+    }
+
     /// The resolution that f64 supports for the boundary, however finely it was evaluated.
     pub fn f64_resolution(&self) -> f64 {
         let known = self.view_resolution.unwrap_or(self.resolution);

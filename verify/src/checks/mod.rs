@@ -262,6 +262,10 @@ impl<'a> Checker<'a> {
                 detail,
             }]
         };
+        if self.evaluation.is_too_thin_for_views() {
+            let refused = "refused: the part is thinner than views resolve";
+            return failed(Finding::Passes, refused.to_owned());
+        }
         let known = self.evaluation.view_resolution();
         let resolution = known.unwrap_or_else(|| self.evaluation.rounded_view_resolution());
         let seen = match contours(&self.evaluation.brep, camera, resolution) {

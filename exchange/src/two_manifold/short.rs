@@ -1,16 +1,18 @@
 //! Merges the ends of edges that are too short for other kernels, and removes faces so narrow that
 //! their two edges become one.
 
-use super::{HalfEdge, TwoManifold};
+use super::{HalfEdge, SeamedEdge, TwoManifold};
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
+use premio_kernel::geometry::torus_curve::wrap;
 
 /// The number of steps from which an edge's length is computed.
 const STEPS: u32 = 16;
 
 impl TwoManifold<'_> {
     /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
-    /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop.
+    /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop, and
+    /// one that turns around an apex: without it the loop would be open in the angle.
     pub(crate) fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
@@ -24,7 +26,8 @@ impl TwoManifold<'_> {
             let is_alone =
                 |ring: &[HalfEdge]| ring.iter().any(|h| h.edge == edge) && ring.len() < 3;
             let mut rings = self.faces.iter().flat_map(|face| &face.loops);
-            if a == b || (p - q).norm() > least || rings.any(|ring| is_alone(ring)) {
+            let is_needed = rings.any(|ring| is_alone(ring)) || self.turns_around_apex(edge);
+            if a == b || (p - q).norm() > least || is_needed {
                 continue;
             }
             self.points[a] = Point3::from((p.coords + q.coords) * 0.5);
@@ -39,6 +42,26 @@ impl TwoManifold<'_> {
         }
     }
 }
+
+impl TwoManifold<'_> {
+    /// Whether the angle about the axis of a face with an apex changes along an edge by more than little.
+    fn turns_around_apex(&self, edge: usize) -> bool {
+        let SeamedEdge { curve, range, .. } = &self.edges[edge];
+        let [p, q] = range.map(|t| curve.point(t));
+        let mut beside = self.faces.iter().filter(|face| {
+            let mut halves = face.loops.iter().flatten();
+            halves.any(|half| half.edge == edge)
+        });
+        beside.any(|face| {
+            let surface = &face.window.surface;
+            let [u, v] = [&p, &q].map(|x| surface.parameters(x)[0]);
+            surface.apexes().next().is_some() && wrap(v - u).abs() > SMALL_TURN
+        })
+    }
+}
+
+/// The change of an angle up to which an edge may be missing from a loop.
+const SMALL_TURN: f64 = 1.0 / 1024.0;
 
 impl TwoManifold<'_> {
     /// Removes the faces between two edges with a distance of at most `least`, which become one

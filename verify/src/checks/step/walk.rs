@@ -168,8 +168,12 @@ const CENTRE: f64 = 128.0 / 225.0;
 /// The fraction of an edge's first piece at which a point is near the edge's end.
 const NEAR_END: f64 = 1.0 / 16.0;
 
-/// The number of times that a piece is halved.
+/// The number of times that a piece is halved for the accuracy of its integral.
 const HALVED: u32 = 12;
+
+/// The number of times that a piece is halved until the angle turns little: next to an apex it turns
+/// within a part of the piece as short as the distance from the apex.
+const HALVED_FOR_TURNS: u32 = 40;
 
 impl Walk<'_> {
     /// Moves along an edge.
@@ -210,7 +214,7 @@ impl Walk<'_> {
             if is_first {
                 self.enter(&edge.curve, from, poles[0].map(|_| used));
             }
-            self.piece(&edge.curve, [from, to], HALVED);
+            self.piece(&edge.curve, [from, to], 0);
         }
         let ended = poles[1].zip(self.at);
         self.pole = ended.map(|(pole, [u, _])| PoleArrival { pole, u, used });
@@ -281,7 +285,7 @@ impl Walk<'_> {
 
     /// Moves along a piece of a curve. It is halved until it turns little and the quadrature of
     /// both halves agrees with that of the whole.
-    fn piece(&mut self, curve: &StepCurve, range: [f64; 2], halvings: u32) {
+    fn piece(&mut self, curve: &StepCurve, range: [f64; 2], halved: u32) {
         let Some(at) = self.at else { return };
         let [from, to] = range;
         let middle = 0.5 * (from + to);
@@ -291,10 +295,14 @@ impl Walk<'_> {
         let turn = (whole.end[0] - at[0])
             .abs()
             .max((first.end[0] - at[0]).abs());
-        let is_fine = (first.sum + second.sum - whole.sum).abs() <= self.fine
-            && (whole.end[0] - second.end[0]).abs() < 1.0
+        let is_fine = (first.sum + second.sum - whole.sum).abs() <= self.fine;
+        let turns_little = (whole.end[0] - second.end[0]).abs() < 1.0
             && (!self.surface.has_angle() || turn < 1.0);
-        if is_fine || halvings == 0 {
+        let is_last = match turns_little {
+            true => is_fine || halved >= HALVED,
+            false => halved >= HALVED_FOR_TURNS,
+        };
+        if is_last {
             if self.surface.has_angle() && turn > 0.5 * PI {
                 self.is_clear = false;
             }
@@ -302,8 +310,8 @@ impl Walk<'_> {
             self.at = Some(second.end);
             return;
         }
-        self.piece(curve, [from, middle], halvings - 1);
-        self.piece(curve, [middle, to], halvings - 1);
+        self.piece(curve, [from, middle], halved + 1);
+        self.piece(curve, [middle, to], halved + 1);
     }
 
     /// The integral along a piece that starts at given parameters.

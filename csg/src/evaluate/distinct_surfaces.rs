@@ -1,8 +1,9 @@
 //! The carriers: the distinct surfaces of all half spaces.
 
 use super::exact_coefficients::coefficients;
-use super::halfspaces::{HalfSpace, HalfSpaceModel};
+use super::halfspaces::{HalfSpace, HalfSpaceModel, Solid};
 use crate::tree::{PlacedPrimitive, Tree};
+use nalgebra::Point3;
 use premio_kernel::brep::topology::Sense;
 use premio_kernel::geometry::intersect::coincidence;
 use premio_kernel::geometry::region_of_interest::RegionOfInterest;
@@ -64,7 +65,9 @@ struct PlacedSide<'s, N: Float = f64> {
     half_space: &'s HalfSpace<N>,
 }
 
-/// Merges equal surfaces, and assigns a carrier to each half space.
+/// Merges equal surfaces, and assigns a carrier to each half space. Equal surfaces have nearly the same
+/// point closest to the extent's centre: the surfaces are sorted by that point, and only neighbours are
+/// compared.
 pub(super) fn merge<'t, N: Float>(
     tree: &'t Tree,
     solids: &HalfSpaceModel<N>,
@@ -72,76 +75,93 @@ pub(super) fn merge<'t, N: Float>(
     predicates: &Predicates,
 ) -> Merged<'t, N> {
     let placed: Vec<&PlacedPrimitive> = tree.leaves().map(|leaf| leaf.1).collect();
-    // Equal surfaces have nearly the same point closest to the extent's centre. The surfaces are
-    // sorted by that point, and only neighbours are compared.
-    let foot = |s: &Surface<N>| {
-        let f = s.frame();
-        let away = extent.centre - f.origin;
-        match s {
-            Surface::Plane(_) => extent.centre - f.z * f.z.dot(&away),
-            Surface::Cylinder(_) | Surface::EllipticCylinder(_) => f.origin + f.z * f.z.dot(&away),
-            Surface::Cone(_)
-            | Surface::Sphere(_)
-            | Surface::Torus(_)
-            | Surface::EllipticCone(_)
-            | Surface::Ellipsoid(_) => f.origin,
-        }
+    let window = N::from_f64(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
+    let own = |s: &Solid<N>| vec![CarrierSide::own(usize::MAX); s.sides.len()];
+    let mut merged = Merged {
+        carriers: Vec::new(),
+        sources: Vec::new(),
+        sides: solids.all.iter().map(own).collect(),
     };
+    // The carriers that may still equal a later surface, by the coordinate of that point.
+    let mut recent: Vec<(N, usize)> = Vec::new();
+    for placed_side in sorted_sides(solids, &extent.centre) {
+        let PlacedSide { x, solid, side, .. } = placed_side;
+        recent.retain(|(y, _)| (x - *y).is_at_most(window));
+        let surface = placed_side.half_space.surface;
+        let source = Source {
+            placed: placed[solid],
+            side,
+        };
+        let candidates = recent.iter().map(|&(_, carrier)| carrier);
+        let known = merged.equal_carrier(candidates, &surface, &source, extent, predicates);
+        merged.sides[solid][side] = known.unwrap_or_else(|| {
+            merged.carriers.push(surface);
+            merged.sources.push(source);
+            recent.push((x, merged.carriers.len() - 1));
+            CarrierSide::own(merged.carriers.len() - 1)
+        });
+    }
+    merged
+}
+
+impl<N: Float> Merged<'_, N> {
+    /// The carrier, among some, that a surface equals.
+    fn equal_carrier(
+        &self,
+        mut candidates: impl Iterator<Item = usize>,
+        surface: &Surface<N>,
+        source: &Source<'_>,
+        extent: &RegionOfInterest<N>,
+        predicates: &Predicates,
+    ) -> Option<CarrierSide> {
+        let exact = || source.exact();
+        candidates.find_map(|carrier| {
+            let exact_known = || self.sources[carrier].exact();
+            let a = Carrier::rounded(&self.carriers[carrier], &exact_known);
+            let b = Carrier::rounded(surface, &exact);
+            let sense = coincidence(a, b, extent, predicates)?;
+            Some(CarrierSide { carrier, sense })
+        })
+    }
+}
+
+/// All half spaces, by the first coordinate of the point of each surface that is closest to a centre.
+fn sorted_sides<'s, N: Float>(
+    solids: &'s HalfSpaceModel<N>,
+    centre: &Point3<N>,
+) -> Vec<PlacedSide<'s, N>> {
     let mut list: Vec<PlacedSide<'_, N>> = Vec::new();
     for (solid, s) in solids.all.iter().enumerate() {
-        for (side, half_space) in s.sides.iter().enumerate() {
-            list.push(PlacedSide {
-                x: foot(&half_space.surface).x,
-                solid,
-                side,
-                half_space,
-            });
-        }
+        list.extend(
+            s.sides
+                .iter()
+                .enumerate()
+                .map(|(side, half_space)| PlacedSide {
+                    x: foot(&half_space.surface, centre).x,
+                    solid,
+                    side,
+                    half_space,
+                }),
+        );
     }
     list.sort_by(|a, b| {
         let indices = [a.solid, a.side].cmp(&[b.solid, b.side]);
         a.x.total_cmp(&b.x).then(indices)
     });
-    let window = N::from_f64(4.0) * predicates.reach::<N>() + N::ROUNDING * extent.radius;
-    let mut sides: Vec<Vec<CarrierSide>> = solids
-        .all
-        .iter()
-        .map(|s| vec![CarrierSide::own(usize::MAX); s.sides.len()])
-        .collect();
-    let mut carriers: Vec<Surface<N>> = Vec::new();
-    let mut sources: Vec<Source<'t>> = Vec::new();
-    // The carriers that may still equal a later surface, by the coordinate of that point.
-    let mut recent: Vec<(N, usize)> = Vec::new();
-    for placed_side in list {
-        let PlacedSide {
-            x,
-            solid,
-            side,
-            half_space,
-        } = placed_side;
-        recent.retain(|(y, _)| (x - *y).is_at_most(window));
-        let source = Source {
-            placed: placed[solid],
-            side,
-        };
-        let exact = || source.exact();
-        let known = recent.iter().find_map(|&(_, carrier)| {
-            let exact_known = || sources[carrier].exact();
-            let a = Carrier::rounded(&carriers[carrier], &exact_known);
-            let b = Carrier::rounded(&half_space.surface, &exact);
-            let sense = coincidence(a, b, extent, predicates)?;
-            Some(CarrierSide { carrier, sense })
-        });
-        sides[solid][side] = known.unwrap_or_else(|| {
-            carriers.push(half_space.surface);
-            sources.push(source);
-            recent.push((x, carriers.len() - 1));
-            CarrierSide::own(carriers.len() - 1)
-        });
-    }
-    Merged {
-        carriers,
-        sources,
-        sides,
+    list
+}
+
+/// The point of a plane or of an axis closest to a centre; of other surfaces the origin of the frame.
+fn foot<N: Float>(surface: &Surface<N>, centre: &Point3<N>) -> Point3<N> {
+    let f = surface.frame();
+    let away = centre - f.origin;
+    match surface {
+        Surface::Plane(_) => centre - f.z * f.z.dot(&away),
+        Surface::Cylinder(_) | Surface::EllipticCylinder(_) => f.origin + f.z * f.z.dot(&away),
+        Surface::Cone(_)
+        | Surface::Sphere(_)
+        | Surface::Torus(_)
+        | Surface::EllipticCone(_)
+        | Surface::Ellipsoid(_) => f.origin,
     }
 }

@@ -56,6 +56,14 @@ impl<N: Float> Near<N> {
             EndRule::Any => self.open.is_empty() || open.any(|within| within),
         }
     }
+
+    /// Whether its section contains the sector beyond a sheet; `None` if the sheet is no part of its
+    /// walls.
+    fn is_within_beyond(&self, sheet: &HalfSheet<N>) -> Option<bool> {
+        let mut walls = self.walls.iter().filter(|wall| wall.has(sheet)).peekable();
+        walls.peek()?;
+        Some(walls.any(|wall| sheet.beyond == wall.side))
+    }
 }
 
 /// A wall of a primitive through a piece.
@@ -336,53 +344,14 @@ impl<N: Float> Classifier<'_, N> {
         }
     }
 
+    /// The faces at a point of a piece, by the changes of material between the sectors around it.
     fn face_uses_at(
         &self,
         spot: &Spot<'_, N>,
         near: &[Near<N>],
     ) -> Result<Vec<FaceUse>, EvaluationError> {
-        let piece = spot.piece;
         let sheets = spot.sheets(|at, way| near.iter().any(|n| n.may_have_face(at, way)))?;
-        let n = sheets.len();
-        // The sides before the first sheet: opposite to those beyond the first sheet of each
-        // carrier.
-        let mut sides = vec![Sense::Along; piece.carriers.len()];
-        for s in sheets.iter().rev() {
-            sides[s.carrier] = s.beyond.reversed();
-        }
-        // Whether each section contains the sector: the last sheet before it that is part of one of
-        // its walls determines that.
-        let within_after = |near: &Near<N>, sheet: &HalfSheet<N>| {
-            let mut walls = near.walls.iter().filter(|wall| wall.has(sheet)).peekable();
-            walls.peek()?;
-            Some(walls.any(|wall| sheet.beyond == wall.side))
-        };
-        let last = |near: &Near<N>| sheets.iter().rev().find_map(|s| within_after(near, s));
-        let mut within: Vec<bool> = near.iter().map(|n| last(n).unwrap_or(true)).collect();
-        let inside = |sides: &[Sense], within: &[bool]| {
-            let held: Vec<NodeId> = near
-                .iter()
-                .zip(within)
-                .filter(|(s, within)| **within && s.is_between_ends(|carrier| sides[carrier]))
-                .map(|(s, _)| s.leaf)
-                .collect();
-            !held.is_empty() && self.membership.contains(&held)
-        };
-        let mut before = inside(&sides, &within);
-        let mut changes: Vec<MaterialChange> = Vec::new();
-        for (sheet, s) in sheets.iter().enumerate() {
-            sides[s.carrier] = s.beyond;
-            for (within, near) in within.iter_mut().zip(near) {
-                if !near.walls.is_empty() {
-                    *within = within_after(near, s).unwrap_or(*within);
-                }
-            }
-            let after = inside(&sides, &within);
-            if after != before {
-                changes.push(MaterialChange { sheet, after });
-            }
-            before = after;
-        }
+        let mut changes = self.material_changes(&sheets, near, spot.piece.carriers.len());
         if let [a, b] = changes[..]
             && sheets[a.sheet].carrier == sheets[b.sheet].carrier
         {
@@ -390,24 +359,52 @@ impl<N: Float> Classifier<'_, N> {
         }
         let first = changes.iter().position(|c| c.after).unwrap_or(0);
         changes.rotate_left(first);
-        debug_assert!(n >= changes.len());
         let face_use = |&MaterialChange { sheet, after }: &MaterialChange| {
             let s = &sheets[sheet];
             // There is material beyond: the outward normal is -l, and the face lies to the right of
             // T.
-            let outward = if (s.beyond == Sense::Along) == after {
-                Sense::Along
-            } else {
-                Sense::Against
+            let outward = match (s.beyond == Sense::Along) == after {
+                true => Sense::Along,
+                false => Sense::Against,
             };
-            let sense = if after { Sense::Against } else { Sense::Along };
             FaceUse {
-                surface: piece.carriers[s.carrier],
+                surface: spot.piece.carriers[s.carrier],
                 outward,
-                sense,
+                sense: if after { Sense::Against } else { Sense::Along },
             }
         };
         Ok(changes.iter().map(face_use).collect())
+    }
+
+    /// The sheets, counterclockwise, at which the sectors around a piece change between material and none.
+    fn material_changes(
+        &self,
+        sheets: &[HalfSheet<N>],
+        near: &[Near<N>],
+        carriers: usize,
+    ) -> Vec<MaterialChange> {
+        let mut sector = Sector::before_first(sheets, near, carriers);
+        let mut before = self.has_material(&sector, near);
+        let mut changes = Vec::new();
+        for (sheet, s) in sheets.iter().enumerate() {
+            sector.pass(s, near);
+            let after = self.has_material(&sector, near);
+            if after != before {
+                changes.push(MaterialChange { sheet, after });
+            }
+            before = after;
+        }
+        changes
+    }
+
+    /// Whether the result has material in a sector.
+    fn has_material(&self, sector: &Sector, near: &[Near<N>]) -> bool {
+        let present = near
+            .iter()
+            .zip(&sector.within)
+            .filter(|(n, within)| **within && n.is_between_ends(|carrier| sector.sides[carrier]));
+        let held: Vec<NodeId> = present.map(|(n, _)| n.leaf).collect();
+        !held.is_empty() && self.membership.contains(&held)
     }
 
     /// Whether the two faces of an edge join smoothly.
@@ -503,6 +500,39 @@ impl<N: Float> Classifier<'_, N> {
             (false, true) => Some(Sense::Against),
             _ => None,
         })
+    }
+}
+
+/// A sector around a piece, between two sheets.
+struct Sector {
+    /// The side of each of the piece's carriers.
+    sides: Vec<Sense>,
+    /// Whether the section of each primitive close by contains it.
+    within: Vec<bool>,
+}
+
+impl Sector {
+    /// The sector before the first sheet. It is on the opposite side of each carrier to that beyond the
+    /// carrier's first sheet, and the last sheet that is part of a primitive's walls determines whether
+    /// the primitive's section contains it.
+    fn before_first<N: Float>(sheets: &[HalfSheet<N>], near: &[Near<N>], carriers: usize) -> Self {
+        let mut sides = vec![Sense::Along; carriers];
+        for s in sheets.iter().rev() {
+            sides[s.carrier] = s.beyond.reversed();
+        }
+        let last = |n: &Near<N>| sheets.iter().rev().find_map(|s| n.is_within_beyond(s));
+        Self {
+            sides,
+            within: near.iter().map(|n| last(n).unwrap_or(true)).collect(),
+        }
+    }
+
+    /// Moves on to the sector beyond a sheet.
+    fn pass<N: Float>(&mut self, sheet: &HalfSheet<N>, near: &[Near<N>]) {
+        self.sides[sheet.carrier] = sheet.beyond;
+        for (within, n) in self.within.iter_mut().zip(near) {
+            *within = n.is_within_beyond(sheet).unwrap_or(*within);
+        }
     }
 }
 

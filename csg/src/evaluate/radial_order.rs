@@ -70,72 +70,100 @@ impl<N: Float> Spot<'_, N> {
         &self,
         may_have_face: impl Fn(usize, &Vector3<N>) -> bool,
     ) -> Result<Vec<HalfSheet<N>>, EvaluationError> {
-        let Self {
-            piece,
-            point: p,
-            tangent,
-            ..
-        } = self;
-        let e1 = perpendicular(tangent);
-        let e2 = tangent.cross(&e1);
-        let mut sheets = Vec::with_capacity(2 * piece.carriers.len());
+        let carriers = &self.piece.carriers;
+        let mut sheets = Vec::with_capacity(2 * carriers.len());
         // A carrier tangent to an earlier one takes its angle, so that only the bend separates
         // them.
         let mut axes: Vec<Axis<N>> = Vec::new();
-        for (at, &c) in piece.carriers.iter().enumerate() {
-            let surface = self.surface(c);
-            let normal = surface.normal(p);
-            let mut direction = normal.cross(tangent).unit();
-            let ways = [direction, -direction].map(|way| may_have_face(at, &way));
-            if ways == [false, false] {
+        for (at, &carrier) in carriers.iter().enumerate() {
+            let direction = self.across(carrier);
+            let ways = [direction, -direction];
+            let present = ways.map(|way| may_have_face(at, &way));
+            if present == [false, false] {
                 continue;
             }
-            let rise = |direction: &Vector3<N>| {
-                let up = normal.dot(&tangent.cross(direction));
-                -surface.normal_curvature(p, direction) * up.signum()
-            };
-            match axes.iter().find(|a| self.touches(a, c, &direction, rise)) {
-                Some(a) => direction = a.aligned(&direction),
-                None => axes.push(Axis {
-                    carrier: c,
-                    direction,
-                    rise: rise(&direction),
-                }),
-            }
-            for (d, may_have_face) in [direction, -direction].into_iter().zip(ways) {
-                if !may_have_face {
-                    continue;
+            let direction = self.aligned(carrier, direction, &mut axes);
+            for (way, present) in [direction, -direction].into_iter().zip(present) {
+                if present {
+                    sheets.push(self.sheet(at, way));
                 }
-                let l = tangent.cross(&d);
-                let up = normal.dot(&l);
-                sheets.push(HalfSheet {
-                    carrier: at,
-                    direction: d,
-                    angle: d.dot(&e2).atan2(d.dot(&e1)),
-                    bend: rise(&d),
-                    beyond: if up.is_above_zero() {
-                        Sense::Against
-                    } else {
-                        Sense::Along
-                    },
-                });
             }
         }
         sheets.sort_by(|a, b| a.angle.total_cmp(&b.angle).then(a.bend.total_cmp(&b.bend)));
-        let reach = self.piece.reach(self.arrangement);
-        let mut is_tied = piece.carriers.len() > 2;
-        for pair in sheets.windows(2) {
-            let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
-            is_tied |= pair[0].angle.is_exactly(pair[1].angle)
-                && self
-                    .predicates
-                    .classify("sheets that touch", gap, rounded(p))
-                    == Side::On;
-        }
-        if is_tied {
+        let has_touching = self.has_touching(&sheets);
+        if carriers.len() > 2 || has_touching {
             self.settle(&mut sheets)?;
         }
         Ok(sheets)
+    }
+
+    /// The unit direction in a carrier across the piece.
+    fn across(&self, carrier: usize) -> Vector3<N> {
+        let normal = self.surface(carrier).normal(&self.point);
+        normal.cross(&self.tangent).unit()
+    }
+
+    /// The curvature of a carrier in a direction, positive counterclockwise.
+    fn rise(&self, carrier: usize, direction: &Vector3<N>) -> N {
+        let surface = self.surface(carrier);
+        let up = surface
+            .normal(&self.point)
+            .dot(&self.tangent.cross(direction));
+        -surface.normal_curvature(&self.point, direction) * up.signum()
+    }
+
+    /// The direction of an earlier carrier that one touches, or its own, which is added to these.
+    fn aligned(
+        &self,
+        carrier: usize,
+        direction: Vector3<N>,
+        axes: &mut Vec<Axis<N>>,
+    ) -> Vector3<N> {
+        let rise = |direction: &Vector3<N>| self.rise(carrier, direction);
+        if let Some(axis) = axes
+            .iter()
+            .find(|a| self.touches(a, carrier, &direction, rise))
+        {
+            return axis.aligned(&direction);
+        }
+        axes.push(Axis {
+            carrier,
+            direction,
+            rise: rise(&direction),
+        });
+        direction
+    }
+
+    /// The half sheet of the carrier of an index in the piece, in a direction.
+    fn sheet(&self, at: usize, direction: Vector3<N>) -> HalfSheet<N> {
+        let carrier = self.piece.carriers[at];
+        let e1 = perpendicular(&self.tangent);
+        let e2 = self.tangent.cross(&e1);
+        let normal = self.surface(carrier).normal(&self.point);
+        let up = normal.dot(&self.tangent.cross(&direction));
+        HalfSheet {
+            carrier: at,
+            direction,
+            angle: direction.dot(&e2).atan2(direction.dot(&e1)),
+            bend: self.rise(carrier, &direction),
+            beyond: match up.is_above_zero() {
+                true => Sense::Against,
+                false => Sense::Along,
+            },
+        }
+    }
+
+    /// Whether two consecutive sheets of one angle have bends that the resolution does not separate.
+    fn has_touching(&self, sheets: &[HalfSheet<N>]) -> bool {
+        let reach = self.piece.reach(self.arrangement);
+        let mut touching = false;
+        for pair in sheets.windows(2) {
+            let gap = (pair[1].bend - pair[0].bend).abs() * reach * reach;
+            let place = rounded(&self.point);
+            touching |= pair[0].angle.is_exactly(pair[1].angle)
+                && self.predicates.classify("sheets that touch", gap, place) == Side::On;
+        }
+        touching
     }
 
     /// Sorts sheets that angles and bends do not separate. Such sheets start close to the piece

@@ -9,20 +9,17 @@
 //! The face lies to the left, towards N × T, so the path enters the face where D·(N × T) > 0.
 
 mod central;
+mod crossings;
 mod reach;
 mod track;
 
 use super::Brep;
 use super::topology::{CoedgeId, Sense};
 use crate::geometry::bounds::Aabb;
-use crate::geometry::curve::{Circle, Curve, Line};
-use crate::geometry::curve_plane::{
-    SectionPlane, line_intersections, section_roots, surface_roots,
-};
+use crate::geometry::curve::Curve;
 use crate::geometry::elliptic_surface::{EllipticCone, EllipticCylinder, eccentric_angle};
 use crate::geometry::frame::Frame;
 use crate::geometry::surface::{Cylinder, Plane, Surface, Torus};
-use crate::geometry::torus_parameter::TorusParameter;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
@@ -87,10 +84,6 @@ pub struct PathCrossing<N: Float = f64> {
     /// How the path crosses the arc.
     pub passage: CrossingSense,
 }
-
-/// A curve crosses a path clearly if the sine of their angle is greater than this times its rounding
-/// error over its radius of curvature.
-const TURNS_BACK: f64 = 16.0;
 
 /// The part of the plane section that is the path.
 #[derive(Clone, Copy, Debug)]
@@ -391,177 +384,6 @@ impl<N: Float> SurfacePath<N> {
         self.may_intersect(&b.min, &b.max, resolution)
     }
 
-    /// The crossings with `arcs` on `surface`, in order. `side` is the sense of the face's outward
-    /// normal relative to the surface's.
-    pub fn crossings(
-        &self,
-        surface: &Surface<N>,
-        side: Sense,
-        arcs: &[DirectedArc<'_, N>],
-        resolution: N,
-    ) -> Vec<PathCrossing<N>> {
-        let mut found = Vec::new();
-        for (i, arc) in arcs.iter().enumerate() {
-            self.intersections(
-                surface,
-                side,
-                arc,
-                &[arc.range],
-                resolution,
-                &mut |at, t, passage| {
-                    found.push(PathCrossing {
-                        at,
-                        arc: i,
-                        t,
-                        passage,
-                    });
-                },
-            );
-        }
-        found.sort_by(|a, b| a.at.total_cmp(&b.at));
-        found
-    }
-
-    /// Reports the crossings with one arc, within the given ranges: (length along the path,
-    /// parameter, crossing sense).
-    pub(super) fn intersections(
-        &self,
-        surface: &Surface<N>,
-        side: Sense,
-        arc: &DirectedArc<'_, N>,
-        ranges: &[[N; 2]],
-        resolution: N,
-        found: &mut impl FnMut(N, N, CrossingSense),
-    ) {
-        let [lo, hi] = arc.range;
-        if !closes(arc) {
-            for t in [lo, hi] {
-                let p = arc.curve.point(t);
-                if self.off(&p).is_within(resolution) && self.passes(&p, resolution) {
-                    found(self.at(&p).max(N::ZERO), t, CrossingSense::Unclear);
-                }
-            }
-        }
-        let sign = arc.sense.sign::<N>() * side.sign::<N>();
-        let mut root = |t: N, simple: bool| {
-            let p = arc.curve.point(t);
-            if !self.passes(&p, resolution) {
-                return;
-            }
-            let s = self.at(&p);
-            let across = self.direction(&p).cross(&surface.normal(&p));
-            let turn = sign * across.dot(&arc.curve.tangent(t));
-            let at_end = s.is_at_most(resolution) || s.reaches(self.length - resolution);
-            let is_along = turn.is_nan() || turn.abs().is_short_of(N::ROUNDING.sqrt());
-            // The curve may turn back within its rounding error, and cross the path again.
-            let is_vague = || match arc.curve {
-                Curve::Toric(c) => {
-                    let bend = arc.curve.curvature(t).length();
-                    let turned = c.rounding_error(t) * bend * N::from_f64(TURNS_BACK);
-                    turn.abs().is_short_of(turned)
-                }
-                _ => false,
-            };
-            let passage = if !simple || at_end || is_along || is_vague() {
-                CrossingSense::Unclear
-            } else if turn.is_above_zero() {
-                CrossingSense::Entering
-            } else {
-                CrossingSense::Leaving
-            };
-            found(s.max(N::ZERO), t, passage);
-        };
-        if let Track::Line(d) = &self.track
-            && line_intersections(arc.curve, arc.range, &self.line(d), resolution, &mut root)
-        {
-            return;
-        }
-        if !ranges.is_empty()
-            && let Some(all) = self.crossings_on_torus(surface, arc.curve, resolution)
-        {
-            let all = all.into_iter().map(|t| arc.curve.in_cycle(t, lo));
-            return all
-                .filter(|t| t.lies_in(arc.range))
-                .for_each(|t| root(t, true));
-        }
-        let mut lost = None;
-        for &range in ranges {
-            let mut count = 0_u32;
-            let mut counted = |t: N, simple: bool| {
-                count += 1;
-                root(t, simple);
-            };
-            match self.branch {
-                Branch::Level(c, _) => {
-                    let upright = Surface::Cylinder(c);
-                    surface_roots(arc.curve, range, &upright, resolution, &mut counted);
-                }
-                _ => {
-                    let section = SectionPlane {
-                        point: &self.start,
-                        normal: &self.normal,
-                    };
-                    section_roots(arc.curve, range, section, resolution, &mut counted);
-                }
-            }
-            if self.has_lost_a_root(arc.curve, range, count, resolution) {
-                lost = Some(range[0]);
-            }
-        }
-        if let Some(t) = lost {
-            found(N::ZERO, t, CrossingSense::Unclear);
-        }
-    }
-
-    /// Whether an arc ends on another side of the section than `roots` changes of side allow. Along
-    /// a curve that runs within its rounding error of the section, roots can be lost.
-    fn has_lost_a_root(&self, curve: &Curve<N>, range: [N; 2], roots: u32, resolution: N) -> bool {
-        if !matches!(curve, Curve::Toric(_) | Curve::Quartic(_)) {
-            return false;
-        }
-        let [first, last] = range.map(|t| self.off(&curve.point(t)));
-        let is_clear = first.abs().is_beyond(resolution) && last.abs().is_beyond(resolution);
-        is_clear && (first * last).is_below_zero() == roots.is_multiple_of(2)
-    }
-
-    /// The line of a straight path in a direction.
-    fn line(&self, direction: &Vector3<N>) -> Line<N> {
-        Line {
-            origin: self.start,
-            direction: *direction,
-        }
-    }
-
-    /// The transversal crossings of a circular path with a whole curve through the angles of a
-    /// torus, where the circle is one of that torus or of the curve's other surface. `None` if the
-    /// result is ambiguous, and for other paths and curves.
-    fn crossings_on_torus(
-        &self,
-        surface: &Surface<N>,
-        curve: &Curve<N>,
-        resolution: N,
-    ) -> Option<Vec<N>> {
-        let (Track::Circle(frame, radius), Curve::Toric(curve)) = (&self.track, curve) else {
-            return None;
-        };
-        if *surface != Surface::Torus(curve.torus) {
-            let (frame, radius) = (*frame, *radius);
-            return curve.across_circle(&Circle { frame, radius }, surface, resolution);
-        }
-        let [theta, phi] = surface.parameters(&self.start);
-        let (fixed, angle) = match self.branch {
-            // The path may start at a pole.
-            Branch::Half(_, radial) if !curve.torus.is_ring() => {
-                let out = surface.frame().components(&radial);
-                (TorusParameter::Around, out.y.atan2(out.x))
-            }
-            Branch::Half(..) => (TorusParameter::Around, theta),
-            Branch::Parallel(..) | Branch::Level(..) => (TorusParameter::Tube, phi),
-            Branch::Whole => return None,
-        };
-        curve.across(fixed, angle, resolution)
-    }
-
     /// The distance of a point from the surface that cuts the path out of its own surface.
     fn off(&self, p: &Point3<N>) -> N {
         match self.branch {
@@ -569,12 +391,4 @@ impl<N: Float> SurfacePath<N> {
             _ => (p - self.start).dot(&self.normal),
         }
     }
-}
-
-/// Whether the arc covers its entire closed curve.
-fn closes<N: Float>(arc: &DirectedArc<'_, N>) -> bool {
-    arc.curve.period().is_some_and(|period| {
-        let [lo, hi] = arc.range;
-        (hi - lo).reaches(period * (N::ONE - N::ROUNDING))
-    })
 }

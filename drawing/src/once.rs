@@ -244,9 +244,10 @@ impl<'a, 'c> Search<'a, 'c> {
     }
 
     /// Whether the whole span runs along another arc: analytic curves that coincide over a range
-    /// coincide up to an end of one of them.
+    /// coincide up to an end of one of them. Curves that nearly coincide may part at an end.
     fn is_whole(&self, other: &ImageArc<'_>) -> bool {
-        self.places.iter().all(|&t| self.is_on(t, other))
+        let mut places = self.places.iter().chain(&self.span);
+        places.all(|&t| self.is_on(t, other))
     }
 
     /// The ranges over which another arc stays within the tolerance, without those where the two
@@ -391,6 +392,24 @@ mod tests {
         assert_eq!(visible, 1.0);
         // Drawn from t² (1 - t) = 0.002, which is t = 0.04578: at the end the two only touch.
         assert!((hidden - 0.95422).abs() < 1e-4, "{hidden}");
+    }
+
+    /// y = 1e-9 / (x + 1e-5) leaves y = 0 by 1e-4 next to x = 0, and is within 1e-6 from x = 0.00099 on.
+    #[test]
+    fn a_curve_that_leaves_a_line_next_to_its_end_is_drawn_there() {
+        let curve = |t: f64| Point2::new(t, 1e-9 / (t + 1e-5));
+        let sample = |k: i32| {
+            let t = (f64::from(k) / 64.0).powi(3);
+            Sample { t, point: curve(t) }
+        };
+        let hidden = ImageArc::Projected(ProjectedArc::new(
+            Rc::new(curve),
+            (0..=64).map(sample).collect(),
+        ));
+        let arcs = vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)];
+        let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
+        assert_eq!(visible, 1.0);
+        assert!((hidden - 0.00109).abs() < 1e-4, "{hidden}");
     }
 
     /// A whole circle behind half of itself, whose parameters begin elsewhere.

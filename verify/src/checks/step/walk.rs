@@ -296,8 +296,8 @@ impl Walk<'_> {
             .abs()
             .max((first.end[0] - at[0]).abs());
         let is_fine = (first.sum + second.sum - whole.sum).abs() <= self.fine;
-        let turns_little = (whole.end[0] - second.end[0]).abs() < 1.0
-            && (!self.surface.has_angle() || turn < 1.0);
+        let turns_little =
+            (whole.end[0] - second.end[0]).abs() < 1.0 && (!self.surface.has_angle() || turn < 1.0);
         let is_last = match turns_little {
             true => is_fine || halved >= HALVED,
             false => halved >= HALVED_FOR_TURNS,

@@ -351,6 +351,21 @@ mod tests {
         ))
     }
 
+    /// The visible line y = 0 from x = 0 to 1, and a hidden curve over t from 0 to 1; `spread` gives the
+    /// parameters of its samples.
+    fn hidden_by_a_line(
+        curve: fn(f64) -> Point2<f64>,
+        spread: fn(f64) -> f64,
+    ) -> Vec<DrawnArc<'static>> {
+        let sample = |k: i32| {
+            let t = spread(f64::from(k) / 64.0);
+            Sample { t, point: curve(t) }
+        };
+        let samples = (0..=64).map(sample).collect();
+        let hidden = ImageArc::Projected(ProjectedArc::new(Rc::new(curve), samples));
+        vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)]
+    }
+
     fn lengths(strokes: &[Stroke]) -> [f64; 2] {
         [true, false].map(|visible| {
             let mine = strokes.iter().filter(|s| s.visible == visible);
@@ -379,15 +394,7 @@ mod tests {
     #[test]
     fn a_curve_that_comes_back_to_a_line_is_drawn_where_it_is_off() {
         let curve = |t: f64| Point2::new(t, t * t * (1.0 - t) / 2000.0);
-        let sample = |k: i32| {
-            let t = f64::from(k) / 64.0;
-            Sample { t, point: curve(t) }
-        };
-        let hidden = ImageArc::Projected(ProjectedArc::new(
-            Rc::new(curve),
-            (0..=64).map(sample).collect(),
-        ));
-        let arcs = vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)];
+        let arcs = hidden_by_a_line(curve, |part| part);
         let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
         assert_eq!(visible, 1.0);
         // Drawn from t² (1 - t) = 0.002, which is t = 0.04578: at the end the two only touch.
@@ -398,15 +405,7 @@ mod tests {
     #[test]
     fn a_curve_that_leaves_a_line_next_to_its_end_is_drawn_there() {
         let curve = |t: f64| Point2::new(t, 1e-9 / (t + 1e-5));
-        let sample = |k: i32| {
-            let t = (f64::from(k) / 64.0).powi(3);
-            Sample { t, point: curve(t) }
-        };
-        let hidden = ImageArc::Projected(ProjectedArc::new(
-            Rc::new(curve),
-            (0..=64).map(sample).collect(),
-        ));
-        let arcs = vec![drawn(segment([0.0, 1.0], 0.0), true), drawn(hidden, false)];
+        let arcs = hidden_by_a_line(curve, |part| part.powi(3));
         let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
         assert_eq!(visible, 1.0);
         assert!((hidden - 0.00109).abs() < 1e-4, "{hidden}");

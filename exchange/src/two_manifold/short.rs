@@ -48,11 +48,11 @@ impl TwoManifold<'_> {
     fn turns_around_apex(&self, edge: usize) -> bool {
         let SeamedEdge { curve, range, .. } = &self.edges[edge];
         let [p, q] = range.map(|t| curve.point(t));
-        let mut beside = self.faces.iter().filter(|face| {
+        let mut adjacent = self.faces.iter().filter(|face| {
             let mut halves = face.loops.iter().flatten();
             halves.any(|half| half.edge == edge)
         });
-        beside.any(|face| {
+        adjacent.any(|face| {
             let surface = &face.window.surface;
             let [u, v] = [&p, &q].map(|x| surface.parameters(x)[0]);
             surface.apexes().next().is_some() && wrap(v - u).abs() > SMALL_TURN

@@ -27,6 +27,13 @@ pub struct DrawnArc<'c> {
 /// An ellipse thinner than this is drawn as a polyline.
 const THIN: f64 = 1.0 / 4096.0;
 
+/// An arc of an ellipse with a half axis longer than this, in multiples of the drawing's size, is
+/// drawn as a polyline: readers with single precision lose its middle.
+const LARGE: f64 = 1024.0;
+
+/// The fractions of an arc at which its ellipse is compared with its curve.
+const COMPARED: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
 /// The share of the pieces before and after a junction that determines whether the image folds
 /// there.
 const NEXT_TO: f64 = 1.0 / 64.0;
@@ -42,6 +49,10 @@ pub struct ArcMaker<'c> {
     pub projection: &'c Projection,
     /// The greatest distance of a polyline from its curve.
     pub distance: f64,
+    /// The drawing's size.
+    pub size: f64,
+    /// The greatest distance of an arc of an ellipse from its curve.
+    pub tolerance: f64,
 }
 
 impl<'c> ArcMaker<'c> {
@@ -140,7 +151,8 @@ impl<'c> ArcMaker<'c> {
         ImageArc::Segment(longest.unwrap_or([points[0]; 2]))
     }
 
-    /// The arc of an ellipse; none of other conics and of a thin one.
+    /// The arc of an ellipse; none of other conics and of an ellipse that is thin, large or not
+    /// accurate. The centre of one that is nearly a parabola has no correct digits.
     fn elliptic(
         &self,
         contour: &Contour,
@@ -156,7 +168,8 @@ impl<'c> ArcMaker<'c> {
                 ImageEllipse::from_coefficients(&six)?
             }
         };
-        (ellipse.ratio > THIN).then_some(())?;
+        let is_drawable = ellipse.ratio > THIN && ellipse.major.norm() < LARGE * self.size;
+        is_drawable.then_some(())?;
         let is_whole = |p: f64| hi - lo >= p * (1.0 - ROUNDING);
         let is_conic = matches!(contour.space_curve, Curve::Circle(_) | Curve::Ellipse(_));
         let angle = |t: f64| ellipse.angle(&self.point(contour, t));
@@ -165,6 +178,12 @@ impl<'c> ArcMaker<'c> {
             let range = [from, from + TAU];
             return Some(ImageArc::Elliptic { ellipse, range });
         }
+        let is_accurate = |part: f64| {
+            let t = lo + (hi - lo) * part;
+            let on_ellipse = ellipse.point(angle(t));
+            (on_ellipse - self.point(contour, t)).norm() <= self.tolerance
+        };
+        COMPARED.into_iter().all(is_accurate).then_some(())?;
         let range = ordered(from, angle(0.5 * (lo + hi)), angle(hi));
         Some(ImageArc::Elliptic { ellipse, range })
     }

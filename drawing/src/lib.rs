@@ -138,6 +138,8 @@ impl Drawing {
             contours,
             projection: &projection,
             distance: 0.0,
+            size: 0.0,
+            tolerance: 0.0,
         };
         let drawn: Vec<&Contour> = contours
             .contours
@@ -146,8 +148,10 @@ impl Drawing {
             .collect();
         let extent = extent(&maker, &drawn);
         let size = (extent[1] - extent[0]).norm();
-        maker.distance = options.distance.unwrap_or(size * FINE);
         let tolerance = (size * COINCIDENT).max(resolution(&maker, &drawn));
+        maker.distance = options.distance.unwrap_or(size * FINE);
+        maker.size = size;
+        maker.tolerance = tolerance;
         let mut arcs = Vec::new();
         for contour in drawn {
             maker.arcs(contour, &mut arcs);

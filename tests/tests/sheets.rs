@@ -2,10 +2,11 @@
 //! makes the sum too small; a line drawn twice, or hidden under a visible one, makes it too large.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
+use nalgebra::{Point2, Vector2};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_drawing::sheet::StandardView;
-use premio_drawing::{Drawing, Layer};
+use premio_drawing::{Drawing, Layer, StrokeShape};
 use premio_visibility::Contours;
 use premio_visibility::contours;
 use premio_visibility::contours::ImageCurve;
@@ -199,4 +200,65 @@ fn edges_seen_end_on_are_hidden_points() {
         }
     }
     assert_lengths("BLO(X=2,Y=3,Z=4)", StandardView::Front, [12.0, 0.0]);
+}
+
+/// The cone r = 2 - z cut along x + z = 1 is bounded from above by y² = 1 + 2 x, a parabola of
+/// length 2 √3 + asinh √3 with its chord, and by two thirds of a circle. Tilted by a millionth of a
+/// degree and less, the parabola is a hyperbola or an ellipse with half axes up to 1e9 times the
+/// part.
+#[test]
+fn conics_that_are_nearly_parabolas_are_drawn_where_they_are() {
+    let root = 3_f64.sqrt();
+    let expected = 2.0 * root + 2.0 * root + root.asinh() + 8.0 * PI / 3.0;
+    for angle in [
+        "45",
+        "45.0001",
+        "44.999999",
+        "45.000001",
+        "44.99999",
+        "45.00001",
+        "44.999995",
+        "45.000005",
+        "44.9999999",
+        "45.00000001",
+        "44.9999999999",
+        "45.0000000001",
+    ] {
+        let part = format!(
+            "CON(R=2,H=2) DIF BLO(X=9,Y=9,Z=9) AT (MOVX=-4.5,MOVY=-4.5,ROTY={angle},MOVX=1)"
+        );
+        let drawing = drawn(&part, StandardView::Top, false);
+        let [visible, hidden] = lengths(&drawing, |_| true);
+        assert!(
+            (visible - expected).abs() < 1e-3,
+            "{angle} {visible} for {expected}"
+        );
+        assert!(hidden < 1e-3, "{angle} {hidden}");
+        // The circle, the chord and the parabola end at the same two points.
+        let ends: Vec<_> = drawing
+            .strokes
+            .iter()
+            .flat_map(|s| ends(&s.shape))
+            .collect();
+        let is_shared =
+            |p: &Point2<f64>| ends.iter().filter(|q| (*q - p).norm() < 1e-5).count() > 2;
+        assert!(ends.iter().all(is_shared), "{angle} {ends:?}");
+    }
+}
+
+fn ends(shape: &StrokeShape) -> [Point2<f64>; 2] {
+    match shape {
+        StrokeShape::Line(ends) => *ends,
+        StrokeShape::Path(points) => [points[0], points[points.len() - 1]],
+        StrokeShape::Ellipse {
+            centre,
+            major,
+            ratio,
+            from,
+            sweep,
+        } => {
+            let minor = Vector2::new(-major.y, major.x) * *ratio;
+            [*from, from + sweep].map(|s| centre + major * s.cos() + minor * s.sin())
+        }
+    }
 }

@@ -22,6 +22,8 @@ pub(super) struct Images<'a> {
 /// A piece that passes close to an image point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passing {
+    /// The contour.
+    pub contour: u32,
     /// The least and the greatest depth of the piece there.
     pub depth: [f64; 2],
     /// Whether the piece is visible.
@@ -33,6 +35,7 @@ pub(super) struct Passing {
 /// A part of a curve, with the images of its ends and its middle.
 #[derive(Clone, Copy, Debug)]
 struct Cell<'a> {
+    contour: u32,
     curve: &'a Curve,
     visible: bool,
     layer: Layer,
@@ -84,6 +87,7 @@ impl<'a> Cell<'a> {
     fn passing(&self) -> Passing {
         let depths = self.seen.map(|s| s.depth);
         Passing {
+            contour: self.contour,
             depth: [
                 depths.into_iter().fold(f64::INFINITY, f64::min),
                 depths.into_iter().fold(f64::NEG_INFINITY, f64::max),
@@ -115,6 +119,7 @@ impl<'a> Images<'a> {
                     };
                     let points: Vec<(f64, Seen)> = (0..=2 * PARTS).map(at).collect();
                     cells.extend(points.windows(3).step_by(2).map(|p| Cell {
+                        contour: contour.id,
                         curve: &contour.space_curve,
                         visible: piece.visible,
                         layer: Layer::from_contour(contour),

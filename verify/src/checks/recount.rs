@@ -1,8 +1,12 @@
 //! Recounts the quantitative invisibility of pieces by ray casting on the tree.
 
 use super::Finding;
+use super::images::Images;
+use super::window::Window;
 use nalgebra::Point3;
 use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence, SightSegment};
+use premio_drawing::Layer;
+use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
 use premio_visibility::camera::projection::{Projection, ViewRay};
@@ -80,22 +84,30 @@ impl Recount {
     /// Recounts every piece. If too few samples could be counted, the lines of sight are moved
     /// closer: in the image of a part that nearly coincides with itself, contours are close to one
     /// another everywhere.
-    pub fn telling(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
-        let first = Self::new(material, seen, clearance);
+    pub fn telling(
+        material: &RayOracle,
+        seen: &Contours,
+        bounds: &Aabb,
+        clearance: &Clearance,
+    ) -> Self {
+        let first = Self::new(material, seen, bounds, clearance);
         let is_conclusive = |recount: &Self| recount.suffices() || !recount.wrong.is_empty();
         if is_conclusive(&first) {
             return first;
         }
         let closer = closer(clearance).into_iter();
-        let mut again = closer.map(|c| Self::new(material, seen, &c));
+        let mut again = closer.map(|c| Self::new(material, seen, bounds, &c));
         again.find(is_conclusive).unwrap_or(first)
     }
 
     /// Recounts every piece.
-    fn new(material: &RayOracle, seen: &Contours, clearance: &Clearance) -> Self {
+    fn new(material: &RayOracle, seen: &Contours, bounds: &Aabb, clearance: &Clearance) -> Self {
+        let projection = Projection::new(&seen.camera, clearance.size);
         let counter = Counter {
             material,
-            projection: Projection::new(&seen.camera, clearance.size),
+            seen,
+            window: Window::around(&projection, bounds),
+            projection,
             clearance,
             closer: closer(clearance),
         };
@@ -179,6 +191,8 @@ struct SampleCount {
 /// Counts the faces in front of samples.
 struct Counter<'a> {
     material: &'a RayOracle,
+    seen: &'a Contours,
+    window: Window,
     projection: Projection,
     clearance: &'a Clearance,
     /// Smaller and smaller clearances.
@@ -198,7 +212,8 @@ impl Counter<'_> {
         }
         let is_on_fold = folds && given == counted + 1 && !piece.visible;
         // The count may depend on the distance of the rays.
-        if is_on_fold || !self.is_stable(place, counted) {
+        let is_behind_fold = || given == counted + 1 && self.is_behind_limb(sampled, place);
+        if is_on_fold || !self.is_stable(place, counted) || is_behind_fold() {
             return SampleVerdict::Ambiguous;
         }
         SampleVerdict::Wrong(WrongPiece {
@@ -241,6 +256,25 @@ impl Counter<'_> {
         lateral
             .iter()
             .any(|lateral| *lateral < NEAR * self.clearance.lateral)
+    }
+
+    /// Whether a limb sample has the image of another limb in front of it, nearer than rays resolve:
+    /// each ray that meets one face meets the other.
+    fn is_behind_limb(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
+        if sampled.contour.kind != ContourKind::Limb {
+            return false;
+        }
+        let finest = self.closer.last().unwrap_or(self.clearance).lateral;
+        let here = self.window.image(place);
+        let scale = match self.projection.sight {
+            ViewRay::Eye(_) => here.depth,
+            ViewRay::Direction(_) => 1.0,
+        };
+        Images::new(self.seen, &self.window).any(here.at, finest / scale, |passing| {
+            passing.layer == Layer::Limb
+                && passing.contour != sampled.contour.id
+                && passing.depth[0] < here.depth - finest
+        })
     }
 
     /// Whether all lines of sight give the same count, however close they are.

@@ -349,6 +349,10 @@ fn general(
             Roots::Everywhere => together += a.length_between(&breaks),
             Roots::At { roots, .. } => {
                 for r in &roots {
+                    if let Some(both) = both_branches(r, [a, b], projection, resolution) {
+                        both.into_iter().for_each(|s| found(r.t, s));
+                        continue;
+                    }
                     let branch = |s: f64| Branch {
                         a,
                         b,
@@ -415,6 +419,46 @@ pub fn place_of(
     let changes = from.is_below_zero() != to.is_below_zero();
     changes.then(|| bisect(root.lo, root.hi, from, nearer))
 }
+
+/// The parameters at which a curve `a` crosses both branches of a conic `b` that is seen nearly
+/// edge-on, at a root of even multiplicity. The branches coincide in the image and are apart in
+/// space, and an arc of the conic may contain one of them only. `None` where the curve touches the
+/// conic.
+fn both_branches(
+    root: &Root,
+    [a, b]: [&ContourArc<'_>; 2],
+    projection: &Projection,
+    resolution: f64,
+) -> Option<[f64; 2]> {
+    let conic = ConicImage::new(&b.image).filter(|_| root.contact == RootKind::Touching)?;
+    let p = a.curve.point(root.t);
+    let here = projection.homogeneous(&p);
+    let ahead = projection.homogeneous(&(p + a.curve.derivative(root.t)));
+    let tangent = here.cross(&ahead);
+    let mut crossed = Vec::new();
+    line_on_conic(
+        conic.basis,
+        &conic.map.tr_mul(&tangent),
+        b.range,
+        &mut |s| crossed.push(s),
+    );
+    let &[first, second] = &crossed[..] else {
+        return None;
+    };
+    let image = here.xy() / here.z;
+    let near = IMAGE_TOLERANCE * resolution;
+    let is_here = |q: &Point3<f64>| {
+        let at = projection.homogeneous(q);
+        let apart = (at.xy() / at.z - image).norm() * projection.scale(&p);
+        apart.is_within(BRANCHES * near)
+    };
+    let [q, r] = [first, second].map(|s| b.curve.point(s));
+    let are_apart = (q - r).norm().is_beyond(4.0 * BRANCHES * near);
+    (is_here(&q) && is_here(&r) && are_apart).then_some([first, second])
+}
+
+/// Two branches of a conic coincide in the image within this multiple of the touching distance.
+const BRANCHES: f64 = 4.0;
 
 /// The branch of a line or conic `b` that passes points of another curve `a` in the image, near a
 /// parameter: one seen edge-on passes them twice.

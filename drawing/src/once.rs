@@ -166,7 +166,8 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
     let mut free = Vec::new();
     let mut from = lo;
     for [start, end] in united(covered) {
-        if is_touch(arc, [start, end], tolerance) {
+        let is_everywhere = start <= lo && hi <= end;
+        if !is_everywhere && is_touch(arc, [start, end], tolerance) {
             continue;
         }
         if from < start {
@@ -193,8 +194,8 @@ fn united(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     all
 }
 
-/// Whether a covered range of an arc on a support is no longer than where curves cross or touch: the
-/// arc stays whole there.
+/// Whether a covered range, less than the whole of an arc on a support, is no longer than where
+/// curves cross or touch: the arc stays whole there.
 fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
     let is_supported = !matches!(arc, ImageArc::Projected(_));
     is_supported && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
@@ -409,6 +410,22 @@ mod tests {
         let [visible, hidden] = lengths(&strokes(arcs, TOLERANCE));
         assert_eq!(visible, 1.0);
         assert!((hidden - 0.00109).abs() < 1e-4, "{hidden}");
+    }
+
+    /// A segment 1e-3 long is shorter than a tangency may be. It is drawn where it crosses a curve,
+    /// and not where it runs along one throughout.
+    #[test]
+    fn a_short_line_along_a_curve_is_drawn_once() {
+        let curve = |slope: f64| {
+            let at = move |t: f64| Point2::new(t, slope * t);
+            let samples = [-1.0, 0.0, 1.0].map(|t| Sample { t, point: at(t) });
+            ImageArc::Projected(ProjectedArc::new(Rc::new(at), samples.to_vec()))
+        };
+        for (slope, count) in [(1e-4, 1), (1e-2, 2)] {
+            let short = segment([-0.0005, 0.0005], 0.0);
+            let arcs = vec![drawn(curve(slope), true), drawn(short, false)];
+            assert_eq!(strokes(arcs, TOLERANCE).len(), count, "{slope}");
+        }
     }
 
     /// A whole circle behind half of itself, whose parameters begin elsewhere.

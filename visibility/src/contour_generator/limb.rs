@@ -168,7 +168,9 @@ fn sphere_limb(s: &Sphere, sight: &ViewRay, resolution: f64) -> Option<Limb> {
 
 fn torus_limbs(s: &Torus, sight: &ViewRay, resolution: f64) -> Result<Vec<Limb>, Unresolved> {
     let local = local(&s.frame, sight);
-    if let Some(circles) = axial_limbs(s, &local, resolution).or_else(|| side_limbs(s, &local)) {
+    if let Some(circles) =
+        axial_limbs(s, &local, resolution).or_else(|| side_limbs(s, &local, resolution))
+    {
         return Ok(circles);
     }
     let form = torus_form(s, &local);
@@ -229,14 +231,14 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Lim
     Some(angles.map(circle).collect())
 }
 
-/// For parallel sight perpendicular to its axis, cos φ cos(θ - α) = 0: the circles at the top and
+/// For parallel sight perpendicular to its axis within the resolution, cos φ cos(θ - α) = 0: the circles at the top and
 /// at the bottom, which the inner sheet does not have, and two circles of the tube, which cross
 /// them.
-fn side_limbs(s: &Torus, sight: &LocalSight) -> Option<Vec<Limb>> {
+fn side_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Limb>> {
     let LocalSight::Direction(d) = sight else {
         return None;
     };
-    is_across(d).then_some(())?;
+    is_across(s, d, resolution).then_some(())?;
     let alpha = d.y.atan2(d.x);
     let side = s.frame.x * -alpha.sin() + s.frame.y * alpha.cos();
     let quarter = TAU / 4.0;
@@ -311,9 +313,9 @@ fn slope(s: &Torus, sight: &LocalSight) -> f64 {
 /// itself determines where a curve crosses a limb, however near to another limb; their product does
 /// not. None where the whole surface is seen edge-on or from inside, and where no such surface is
 /// known.
-pub fn cutters(surface: &Surface, sight: &ViewRay) -> Vec<Surface> {
+pub fn cutters(surface: &Surface, sight: &ViewRay, resolution: f64) -> Vec<Surface> {
     match surface {
-        Surface::Torus(s) => side_cutters(s, sight),
+        Surface::Torus(s) => side_cutters(s, sight, resolution),
         quadric => polar_plane(quadric, sight)
             .map(Surface::Plane)
             .into_iter()
@@ -321,11 +323,11 @@ pub fn cutters(surface: &Surface, sight: &ViewRay) -> Vec<Surface> {
     }
 }
 
-fn side_cutters(s: &Torus, sight: &ViewRay) -> Vec<Surface> {
+fn side_cutters(s: &Torus, sight: &ViewRay, resolution: f64) -> Vec<Surface> {
     let LocalSight::Direction(d) = local(&s.frame, sight) else {
         return Vec::new();
     };
-    if !is_across(&d) {
+    if !is_across(s, &d, resolution) {
         return Vec::new();
     }
     let along = s.frame.x * d.x + s.frame.y * d.y;
@@ -345,10 +347,18 @@ fn side_cutters(s: &Torus, sight: &ViewRay) -> Vec<Surface> {
         .collect()
 }
 
-/// Whether a direction of sight, in a torus's frame, is perpendicular to its axis.
-fn is_across(direction: &Vector3<f64>) -> bool {
-    direction.z.is_within(ROUNDING)
+/// Whether a direction of sight, in a torus's frame, is perpendicular to its axis within the
+/// resolution. The limbs of a torus tilted by less leave these circles by up to the square root of
+/// the tilt along the line of sight, and by no more than the resolution in the image. The form of
+/// the limbs has its nodes at the level r d_z.
+fn is_across(s: &Torus, direction: &Vector3<f64>, resolution: f64) -> bool {
+    let level = s.minor * direction.z;
+    level.is_within(NODES * resolution) || direction.z.is_within(ROUNDING)
 }
+
+/// The level, in multiples of the resolution, up to which the four branches next to a node are one
+/// point. It is beyond that at which tracing joins them.
+const NODES: f64 = 2.0;
 
 /// The polar plane of the eye with respect to a quadric: it intersects the surface in the limb.
 /// None for planes and tori, and where the whole surface is seen edge-on or from inside.

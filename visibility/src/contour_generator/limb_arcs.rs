@@ -96,7 +96,7 @@ impl LimbTrimmer<'_, '_, '_, '_> {
             return;
         }
         let surface = self.scene.brep.surface(face);
-        let cutters = cutters(surface, &self.scene.projection.sight);
+        let cutters = cutters(surface, &self.scene.projection.sight, self.scene.resolution);
         let mut ends: Vec<Vec<ArcJunction>> = vec![Vec::new(); limbs.len()];
         for edge in face_edges(self.scene, face) {
             for t in self.intersects(surface, limbs, &cutters, edge) {

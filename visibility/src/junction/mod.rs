@@ -354,9 +354,12 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Marks the junctions of `far` that `near` passes in front of in the image, even if it only
-    /// touches there.
+    /// touches there. Where the images are nearly tangent, two crossings count as a touch, of which
+    /// an arc that ends between them has one only: next to another contour, `near` may come in front
+    /// over the length of a tangency.
     fn mark_passed_ambiguous(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
+        let tangency = (margin * self.scene.bounds().diagonal()).sqrt();
         for ArcJunction { junction: id, t } in far.junctions() {
             let known = passes_once(near, id) || self.junctions.is_ambiguous(id);
             if known || !near.hull.contains(self.junctions.image(id)) {
@@ -364,11 +367,15 @@ impl Search<'_, '_, '_, '_> {
             }
             let p = far.curve.point(t);
             let v = self.scene.projection.towards_eye(&p).direction;
+            let least = match near.junctions().any(|own| own.junction == id) {
+                true => margin,
+                false => -tangency,
+            };
             let mut passed = false;
             parameters_at(near, &p, self.scene, &mut |s| {
                 let q = near.curve.point(s);
                 let ahead = (q - p).dot(&v);
-                passed |= ahead.is_beyond(margin) && self.apart(&p, &q).is_at_most(margin);
+                passed |= ahead.is_beyond(least) && self.apart(&p, &q).is_at_most(margin);
             });
             if passed {
                 self.junctions.mark_ambiguous(id);

@@ -2,9 +2,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{PART, command, said};
+use crate::common::{PART, command, said};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

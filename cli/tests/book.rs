@@ -8,8 +8,7 @@
 //! that file.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
+use crate::common;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;

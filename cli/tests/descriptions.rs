@@ -2,9 +2,7 @@
 //! refused where.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUPS, assert_says, command, folder, premio, refused, said};
+use crate::common::{SETUPS, assert_says, command, folder, premio, refused, said};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,7 @@
 //! `premio fuzz` from outside: exit status, summary, models, and continuing a run.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{command, premio};
+use crate::common::{command, premio};
 use serde_json::Value;
 use std::fs;
 use std::process::{Command, Output, Stdio};

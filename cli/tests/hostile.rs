@@ -2,9 +2,7 @@
 //! that stay as they are.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUP, SETUPS, assert_says, folder, premio, prepared, refused, said};
+use crate::common::{self, SETUP, SETUPS, assert_says, folder, premio, prepared, refused, said};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,7 @@
 //! The commands about images from outside: exit status, messages, files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::premio;
+use crate::common::{self, premio};
 use serde_json::Value;
 use std::fs;
 use std::process::Output;

@@ -1,10 +1,8 @@
 //! The library gives what the program gives: the same measures, and the same bytes of files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
+use crate::common::{SETUP, SETUPS, folder, premio};
 use ::premio::prelude::*;
-use common::{SETUP, SETUPS, folder, premio};
 use serde_json::Value;
 use std::fs;
 

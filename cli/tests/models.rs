@@ -1,9 +1,7 @@
 //! Inconsistent models and shards with correct digests: refused at their lines.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUPS, assert_says, premio, prepared, refused};
+use crate::common::{SETUPS, assert_says, premio, prepared, refused};
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::Path;

@@ -2,9 +2,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUP, assert_says, folder, said};
+use crate::common::{self, SETUP, assert_says, folder, said};
 use serde_json::Value;
 use std::fs;
 

@@ -1,9 +1,7 @@
 //! Pictures that are damaged or cut: refused with their name, and no file is written.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{CAMERA, assert_says, folder, premio, said};
+use crate::common::{self, CAMERA, assert_says, folder, premio, said};
 use std::fs;
 use tempfile::TempDir;
 

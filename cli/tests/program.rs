@@ -1,9 +1,7 @@
 //! The program from outside: exit status, messages, output.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{command, premio};
+use crate::common::{self, command, premio};
 use serde_json::Value;
 use std::fs;
 use std::process::{Output, Stdio};

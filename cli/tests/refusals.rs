@@ -2,9 +2,7 @@
 //! expected.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUP, assert_says, folder, premio, prepared, refused, said};
+use crate::common::{SETUP, assert_says, folder, premio, prepared, refused, said};
 use std::fs;
 
 #[test]

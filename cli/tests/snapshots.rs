@@ -3,8 +3,7 @@
 //! Numbers are kept to nine digits, so that the last bits of a platform's sine do not count.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
+use crate::common;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

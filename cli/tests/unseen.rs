@@ -1,9 +1,7 @@
 //! The messages for empty parts, and for eyes and lights that see nothing.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod common;
-
-use common::{SETUP, assert_says, folder, premio, said};
+use crate::common::{SETUP, assert_says, folder, premio, said};
 use std::fs;
 use std::path::Path;
 

@@ -2,7 +2,6 @@
 //! place, no disabled tests, no overlong files.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-#[path = "layering/modules.rs"]
 mod modules;
 
 use modules::{Arrow, Modules, circles};

@@ -1,0 +1,20 @@
+//! The tests of the program from outside, in one program: it is linked once, and its tests share the
+//! cores.
+
+mod against;
+mod book;
+mod common;
+mod descriptions;
+mod fuzz;
+mod hostile;
+mod images;
+mod library;
+mod matching;
+mod models;
+mod names;
+mod pictures;
+mod program;
+mod refusals;
+mod scad;
+mod snapshots;
+mod unseen;

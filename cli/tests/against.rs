@@ -1,6 +1,5 @@
 //! `premio fuzz --against` from outside: other programs that are right, wrong, or worse.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{PART, command, said};
 use serde_json::Value;

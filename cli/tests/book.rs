@@ -6,7 +6,6 @@
 //! anything. `parse-only` in the info string only parses the command; `status=N` expects another
 //! exit status. A block after a line that ends with the name of a file, as in "`plate.padl`:", is
 //! that file.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common;
 use serde_json::Value;

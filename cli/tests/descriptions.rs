@@ -1,6 +1,5 @@
 //! Descriptions in several files, and values from the command line: what is measured, and what is
 //! refused where.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{SETUPS, assert_says, command, folder, premio, refused, said};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! `premio fuzz` from outside: exit status, summary, models, and continuing a run.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{command, premio};
 use serde_json::Value;

@@ -1,6 +1,5 @@
 //! Input that is broken or hostile, from outside: the status, the message with its place, and files
 //! that stay as they are.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{self, SETUP, SETUPS, assert_says, folder, premio, prepared, refused, said};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! The library gives what the program gives: the same measures, and the same bytes of files.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{SETUP, SETUPS, folder, premio};
 use ::premio::prelude::*;

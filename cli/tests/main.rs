@@ -1,5 +1,6 @@
 //! The tests of the program from outside, in one program: it is linked once, and its tests share the
 //! cores.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod against;
 mod book;

@@ -1,5 +1,4 @@
 //! `premio match` and `premio track` from outside: exit status, messages, files.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{self, premio};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! Inconsistent models and shards with correct digests: refused at their lines.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{SETUPS, assert_says, premio, prepared, refused};
 use sha2::{Digest, Sha256};

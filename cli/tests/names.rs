@@ -1,6 +1,5 @@
 //! Names with escape sequences and control characters: no terminal obeys them, no file breaks.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{self, SETUP, assert_says, folder, said};
 use serde_json::Value;

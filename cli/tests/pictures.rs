@@ -1,5 +1,4 @@
 //! Pictures that are damaged or cut: refused with their name, and no file is written.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{self, CAMERA, assert_says, folder, premio, said};
 use std::fs;

@@ -1,5 +1,4 @@
 //! The program from outside: exit status, messages, output.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{self, command, premio};
 use serde_json::Value;

@@ -1,6 +1,5 @@
 //! Outputs in the wrong place, states, cameras and numbers: refused with what was found and
 //! expected.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{SETUP, assert_says, folder, premio, prepared, refused, said};
 use std::fs;

@@ -1,6 +1,5 @@
 //! `.scad` files: the program `openscad` on the path flattens them.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;

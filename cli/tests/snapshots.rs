@@ -1,7 +1,6 @@
 //! Snapshots of complete outputs: every change of an output is reviewed before it is accepted.
 //!
 //! Numbers are kept to nine digits, so that the last bits of a platform's sine do not count.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common;
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! The messages for empty parts, and for eyes and lights that see nothing.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use crate::common::{SETUP, assert_says, folder, premio, said};
 use std::fs;

@@ -3,7 +3,6 @@
 //!
 //! `answer.toml` contains formulas, not computed numbers; see `premio_tests::formula`. A case may
 //! use the same description with several values of its parameters.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, Format, ReadOptions, read};

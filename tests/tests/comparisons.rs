@@ -5,7 +5,6 @@
 //! following are therefore missed: an equality of two simple names, or of arrays and structures of
 //! f64 values; an order of two f64 values one of which is named like an integer; and comparisons in
 //! a macro whose body is neither a list of expressions nor that of `matches!`.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,4 @@
 //! Descriptions with known answers, from the folder that PREMIO_CORPUS names.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Description, FacetLimit, Format, ReadOptions, read};

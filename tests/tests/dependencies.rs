@@ -1,5 +1,4 @@
 //! No manifest names a dependency that its sources do not use.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::collections::BTreeSet;
 use std::fs;

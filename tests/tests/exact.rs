@@ -1,7 +1,6 @@
 //! The named cases in exact evaluation: every zero is proven, and the boundary is the one by the
 //! resolution, except where a description is not exactly as it is meant. In addition, evaluation by
 //! the resolution without any decision in f64 gives the same boundary.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Arithmetic, Evaluation, EvaluationError, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

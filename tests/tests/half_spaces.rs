@@ -1,5 +1,4 @@
 //! Unbounded solids: the same part of primitives, and of half-spaces and complements.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadError, ReadOptions, read};

@@ -1,6 +1,5 @@
 //! Holes in the side of a cone, close to its apex. Most of such a loop lies above the hole, and
 //! little of it below, where the face continues to the apex.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

@@ -1,6 +1,5 @@
 //! The idioms of OpenSCAD files, from the folder `scad` of the corpus that PREMIO_CORPUS names: volume,
 //! area, and the kinds of the surfaces.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

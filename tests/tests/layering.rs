@@ -1,6 +1,5 @@
 //! Structural rules: no dependencies that run backwards or in a circle, no tolerances outside their
 //! place, no disabled tests, no overlong files.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod modules;
 

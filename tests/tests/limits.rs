@@ -1,5 +1,4 @@
 //! Resource limits, and reproducibility.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::Vector3;
 use premio_csg::evaluate::{Evaluation, EvaluationError, EvaluationOptions, evaluate};

@@ -1,5 +1,4 @@
 //! Matching in rendered pictures: known poses, absent parts, clutter.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

@@ -1,6 +1,5 @@
 //! Rules for public names: unique type names, the usual names of constructors, and the field's
 //! terms.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,6 +1,5 @@
 //! Pairs that touch exactly, and the same with a small gap or overlap. Distances below the
 //! close-call limit are listed on either side, and nothing else is.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

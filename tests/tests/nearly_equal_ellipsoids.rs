@@ -1,6 +1,5 @@
 //! Ellipsoids that differ by 1e-9 to 1e-7: the volumes of their union, intersection and differences add
 //! up, and agree with formulas to the first order.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use approx::assert_relative_eq;
 use premio_csg::evaluate::{EvaluationOptions, evaluate};

@@ -1,6 +1,5 @@
 //! Predicted images compared with ray casting: the contents of regions, grey levels, and
 //! detections.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

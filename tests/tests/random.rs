@@ -1,5 +1,4 @@
 //! Random trees: none may be wrong in any way that is detectable from outside.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_tests::examine::{Depth, VIEWS, examine_within};
 use premio_tests::random::tree;

@@ -1,5 +1,4 @@
 //! Parts whose primitives lie at rounded coordinates are as they were meant.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::Format;

@@ -1,6 +1,5 @@
 //! A part and its camera scaled by a power of two. Rounding is unchanged, so every number is scaled
 //! by that power and every decision is the same.
-#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};

@@ -1,6 +1,5 @@
 //! Views along the axes, with line lengths computed by hand from the dimensions. A missing line
 //! makes the sum too small; a line drawn twice, or hidden under a visible one, makes it too large.
-#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::{Point2, Vector2};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};

@@ -1,5 +1,5 @@
 //! A pipe with k branches seen along its own axis, where many contours coincide.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
+#![allow(clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

@@ -1,6 +1,5 @@
 //! Triangles approximate the boundary of every named case, and rays on them agree on what is
 //! hidden.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

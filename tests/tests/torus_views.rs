@@ -1,7 +1,7 @@
 //! Views of a torus against the torus's own equations. Every limb of the closed form is present, no
 //! piece passes a cusp, and the invisibility of every piece agrees with the roots of the quartic on
 //! its line of sight.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
+#![allow(clippy::print_stdout, reason = "tests")]
 
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

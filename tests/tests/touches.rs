@@ -1,6 +1,5 @@
 //! Points where a boundary touches itself: a ball is placed against a known point of each
 //! primitive.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use nalgebra::{Point3, Vector3};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

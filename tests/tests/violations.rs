@@ -1,5 +1,4 @@
 //! The checker of boundaries finds integrals that are not those of the boundary.
-#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::reader::{Format, ReadOptions, read};

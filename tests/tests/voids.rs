@@ -1,5 +1,4 @@
 //! The solid to which a void belongs, and the points that solids contain.
-#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by it")]
 
 use nalgebra::Point3;
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};

@@ -1,5 +1,4 @@
 //! Common functions of the tests of the program from outside.
-#![allow(dead_code, reason = "no test needs all of it")]
 
 use std::fs;
 use std::path::Path;

@@ -261,3 +261,13 @@ fn ends(shape: &StrokeShape) -> [Point2<f64>; 2] {
         }
     }
 }
+
+/// A cylinder of radius 10 and height 5, tilted by a millionth of a degree towards the eye and away
+/// from it: one rim is seen all around, as an ellipse 3e-7 wide.
+#[test]
+fn a_circle_seen_nearly_edge_on_is_one_line() {
+    for tilt in ["0.000001", "-0.000001"] {
+        let part = format!("CYL(R=10,H=5) AT (ROTX={tilt})");
+        assert_lengths(&part, StandardView::Front, [2.0 * (20.0 + 5.0), 0.0]);
+    }
+}

@@ -231,9 +231,9 @@ fn axial_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Lim
     Some(angles.map(circle).collect())
 }
 
-/// For parallel sight perpendicular to its axis within the resolution, cos φ cos(θ - α) = 0: the circles at the top and
-/// at the bottom, which the inner sheet does not have, and two circles of the tube, which cross
-/// them.
+/// For parallel sight perpendicular to its axis within the resolution, cos φ cos(θ - α) = 0: the
+/// circles at the top and at the bottom, which the inner sheet does not have, and two circles of the
+/// tube, which cross them.
 fn side_limbs(s: &Torus, sight: &LocalSight, resolution: f64) -> Option<Vec<Limb>> {
     let LocalSight::Direction(d) = sight else {
         return None;
@@ -347,18 +347,18 @@ fn side_cutters(s: &Torus, sight: &ViewRay, resolution: f64) -> Vec<Surface> {
         .collect()
 }
 
-/// Whether a direction of sight, in a torus's frame, is perpendicular to its axis within the
-/// resolution. The limbs of a torus tilted by less leave these circles by up to the square root of
-/// the tilt along the line of sight, and by no more than the resolution in the image. The form of
-/// the limbs has its nodes at the level r d_z.
+/// The value of the form, in multiples of the resolution, up to which four branches intersect in a
+/// node. Tracing joins them up to one resolution.
+const NODES: f64 = 2.0;
+
+/// Whether a direction of sight d, in a torus's frame, is perpendicular to its axis within the
+/// resolution. At the nodes of the circles, the form of the limbs has the value r d_z. In the image
+/// that is the greatest distance of the limbs from the circles; along the line of sight the distance
+/// grows with the square root of the tilt.
 fn is_across(s: &Torus, direction: &Vector3<f64>, resolution: f64) -> bool {
     let level = s.minor * direction.z;
     level.is_within(NODES * resolution) || direction.z.is_within(ROUNDING)
 }
-
-/// The level, in multiples of the resolution, up to which the four branches next to a node are one
-/// point. It is beyond that at which tracing joins them.
-const NODES: f64 = 2.0;
 
 /// The polar plane of the eye with respect to a quadric: it intersects the surface in the limb.
 /// None for planes and tori, and where the whole surface is seen edge-on or from inside.

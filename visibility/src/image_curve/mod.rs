@@ -388,6 +388,12 @@ pub(crate) fn flat_point<S: Analytic<Float = f64>>(projection: &Projection, p: [
     [x.over(z), y.over(z)]
 }
 
+/// The distance of the images of two points, as a distance in space at the first.
+pub(crate) fn image_distance(projection: &Projection, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
+    let (x, y) = (flat_of(projection, p), flat_of(projection, q));
+    (x[0] - y[0]).hypot(x[1] - y[1]) * projection.scale(p)
+}
+
 /// The normalised image point of a point in space.
 pub(crate) fn flat_of(projection: &Projection, p: &Point3<f64>) -> [f64; 2] {
     let h = projection.homogeneous(p);

@@ -11,7 +11,7 @@ use crate::contour_generator::contour_arc::ContourArc;
 use crate::image_curve::edgewise::Edgewise;
 use crate::image_curve::monotone_arc::passes;
 use crate::image_curve::polynomial::{QuarticPolynomial, crossings};
-use crate::image_curve::{Basis, Image, flat_of, line_on_conic};
+use crate::image_curve::{Basis, Image, flat_of, image_distance, line_on_conic};
 use crate::junction::intersect_general::general_pair;
 use crate::scene::Scene;
 use crate::scene::tolerance::IMAGE_TOLERANCE;
@@ -420,10 +420,16 @@ pub fn place_of(
     changes.then(|| bisect(root.lo, root.hi, from, nearer))
 }
 
-/// The parameters at which a curve `a` crosses both branches of a conic `b` that is seen nearly
+/// Two branches of a conic coincide in the image within this multiple of the touching distance, and
+/// are apart in space by more than [`APART`] times as much.
+const BRANCHES: f64 = 4.0;
+/// See [`BRANCHES`].
+const APART: f64 = 4.0;
+
+/// The parameters at which a curve `a` crosses the two branches of a conic `b` that is seen nearly
 /// edge-on, at a root of even multiplicity. The branches coincide in the image and are apart in
-/// space, and an arc of the conic may contain one of them only. `None` where the curve touches the
-/// conic.
+/// space. Each is a crossing, because an arc of the conic may contain only one of them. `None` where
+/// the curve touches the conic.
 fn both_branches(
     root: &Root,
     [a, b]: [&ContourArc<'_>; 2],
@@ -432,33 +438,21 @@ fn both_branches(
 ) -> Option<[f64; 2]> {
     let conic = ConicImage::new(&b.image).filter(|_| root.contact == RootKind::Touching)?;
     let p = a.curve.point(root.t);
-    let here = projection.homogeneous(&p);
-    let ahead = projection.homogeneous(&(p + a.curve.derivative(root.t)));
-    let tangent = here.cross(&ahead);
+    let ahead = p + a.curve.derivative(root.t);
+    let tangent = (projection.homogeneous(&p)).cross(&projection.homogeneous(&ahead));
     let mut crossed = Vec::new();
-    line_on_conic(
-        conic.basis,
-        &conic.map.tr_mul(&tangent),
-        b.range,
-        &mut |s| crossed.push(s),
-    );
+    let mut push = |s| crossed.push(s);
+    line_on_conic(conic.basis, &conic.map.tr_mul(&tangent), b.range, &mut push);
     let &[first, second] = &crossed[..] else {
         return None;
     };
-    let image = here.xy() / here.z;
-    let near = IMAGE_TOLERANCE * resolution;
-    let is_here = |q: &Point3<f64>| {
-        let at = projection.homogeneous(q);
-        let apart = (at.xy() / at.z - image).norm() * projection.scale(&p);
-        apart.is_within(BRANCHES * near)
-    };
-    let [q, r] = [first, second].map(|s| b.curve.point(s));
-    let are_apart = (q - r).norm().is_beyond(4.0 * BRANCHES * near);
-    (is_here(&q) && is_here(&r) && are_apart).then_some([first, second])
+    let near = BRANCHES * IMAGE_TOLERANCE * resolution;
+    let points = [first, second].map(|s| b.curve.point(s));
+    let mut distances = points.iter().map(|q| image_distance(projection, &p, q));
+    let coincide = distances.all(|distance| distance.is_within(near));
+    let are_apart = (points[1] - points[0]).norm().is_beyond(APART * near);
+    (coincide && are_apart).then_some([first, second])
 }
-
-/// Two branches of a conic coincide in the image within this multiple of the touching distance.
-const BRANCHES: f64 = 4.0;
 
 /// The branch of a line or conic `b` that passes points of another curve `a` in the image, near a
 /// parameter: one seen edge-on passes them twice.

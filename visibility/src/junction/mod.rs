@@ -10,7 +10,7 @@ pub(crate) mod snap;
 
 use crate::contour_generator::contour_arc::{ArcJunction, Change, ContourArc, Split};
 use crate::contour_generator::junctions::{JunctionKind, JunctionSupport, Junctions};
-use crate::image_curve::{Image, flat_of};
+use crate::image_curve::{Image, image_distance};
 use crate::junction::arc_position::{ArcPosition, ArcSplit, CrossedArc, IndexedArc};
 use crate::junction::broad_phase::candidates;
 use crate::junction::crossing_effect::{change, is_turned_away};
@@ -204,9 +204,7 @@ impl Search<'_, '_, '_, '_> {
 
     /// The distance of two points in the image, as a distance in space.
     fn apart(&self, p: &Point3<f64>, q: &Point3<f64>) -> f64 {
-        let projection = self.scene.projection;
-        let (x, y) = (flat_of(projection, p), flat_of(projection, q));
-        (x[0] - y[0]).hypot(x[1] - y[1]) * projection.scale(p)
+        image_distance(self.scene.projection, p, q)
     }
 
     /// Whether the image between two parameters is straight within the resolution.
@@ -354,9 +352,9 @@ impl Search<'_, '_, '_, '_> {
     }
 
     /// Marks the junctions of `far` that `near` passes in front of in the image, even if it only
-    /// touches there. Where the images are nearly tangent, two crossings count as a touch, of which
-    /// an arc that ends between them has one only: next to another contour, `near` may come in front
-    /// over the length of a tangency.
+    /// touches there. Where the images are nearly tangent, two crossings count as a touch. If `far`
+    /// ends between the two, it has only one of them: `near` may lie behind the end and come in front
+    /// within the length of the tangency.
     fn mark_passed_ambiguous(&mut self, far: &ContourArc<'_>, near: &ContourArc<'_>) {
         let margin = 2.0 * IMAGE_TOLERANCE * self.scene.resolution;
         let tangency = (margin * self.scene.bounds().diagonal()).sqrt();

@@ -134,24 +134,22 @@ impl Drawing {
     /// is.
     pub fn new(contours: &Contours, options: &DrawingOptions) -> Self {
         let projection = Projection::new(&contours.camera, 1.0);
-        let mut maker = ArcMaker {
-            contours,
-            projection: &projection,
-            distance: 0.0,
-            size: 0.0,
-            tolerance: 0.0,
-        };
         let drawn: Vec<&Contour> = contours
             .contours
             .iter()
             .filter(|c| options.smooth || !c.smooth)
             .collect();
-        let extent = extent(&maker, &drawn);
+        let extent = extent(&projection, &drawn);
         let size = (extent[1] - extent[0]).norm();
-        let tolerance = (size * COINCIDENT).max(resolution(&maker, &drawn));
-        maker.distance = options.distance.unwrap_or(size * FINE);
-        maker.size = size;
-        maker.tolerance = tolerance;
+        let magnification = magnification(&projection, &drawn);
+        let tolerance = (size * COINCIDENT).max(magnification * contours.resolution);
+        let maker = ArcMaker {
+            contours,
+            projection: &projection,
+            distance: options.distance.unwrap_or(size * FINE),
+            size,
+            tolerance,
+        };
         let mut arcs = Vec::new();
         for contour in drawn {
             maker.arcs(contour, &mut arcs);
@@ -194,11 +192,11 @@ fn places<'c>(contours: &'c [&Contour]) -> impl Iterator<Item = ContourPlace<'c>
     contours.iter().flat_map(move |contour| of(contour))
 }
 
-fn extent(maker: &ArcMaker<'_>, contours: &[&Contour]) -> [Point2<f64>; 2] {
+fn extent(projection: &Projection, contours: &[&Contour]) -> [Point2<f64>; 2] {
     let mut lo = Point2::new(f64::INFINITY, f64::INFINITY);
     let mut hi = -lo;
     for ContourPlace { contour, t } in places(contours) {
-        let p = maker.point(contour, t);
+        let p = projection.project_y_up(&contour.space_curve.point(t));
         lo = lo.inf(&p);
         hi = hi.sup(&p);
     }
@@ -208,16 +206,43 @@ fn extent(maker: &ArcMaker<'_>, contours: &[&Contour]) -> [Point2<f64>; 2] {
     [lo, hi]
 }
 
-/// The part's resolution in the image, where it is largest.
-fn resolution(maker: &ArcMaker<'_>, contours: &[&Contour]) -> f64 {
-    let scale = places(contours).map(|ContourPlace { contour, t }| {
-        let p = contour.space_curve.point(t);
-        maker.projection.magnification(&p)
-    });
-    scale.fold(0.0, f64::max) * maker.contours.resolution
+/// The greatest factor from a length in space to one in the image.
+fn magnification(projection: &Projection, contours: &[&Contour]) -> f64 {
+    let all = places(contours)
+        .map(|ContourPlace { contour, t }| projection.magnification(&contour.space_curve.point(t)));
+    all.fold(0.0, f64::max)
 }
 
 impl StrokeShape {
+    /// The point at a fraction from 0 to 1: of the length, on an ellipse of the parameter.
+    pub fn point(&self, fraction: f64) -> Point2<f64> {
+        match self {
+            Self::Line([a, b]) => a + (b - a) * fraction,
+            Self::Path(points) => {
+                let mut left = fraction * self.length();
+                for side in points.windows(2) {
+                    let step = (side[1] - side[0]).norm();
+                    if left <= step && step > 0.0 {
+                        return side[0] + (side[1] - side[0]) * (left / step);
+                    }
+                    left -= step;
+                }
+                points.last().copied().unwrap_or_default()
+            }
+            Self::Ellipse {
+                centre,
+                major,
+                ratio,
+                from,
+                sweep,
+            } => {
+                let minor = Vector2::new(-major.y, major.x) * *ratio;
+                let s = from + sweep * fraction;
+                centre + major * s.cos() + minor * s.sin()
+            }
+        }
+    }
+
     /// The length.
     pub fn length(&self) -> f64 {
         match self {

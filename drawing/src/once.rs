@@ -166,8 +166,7 @@ fn uncovered(arc: &ImageArc<'_>, others: &[&ImageArc<'_>], tolerance: f64) -> Ve
     let mut free = Vec::new();
     let mut from = lo;
     for [start, end] in united(covered) {
-        let is_everywhere = start <= lo && hi <= end;
-        if !is_everywhere && is_touch(arc, [start, end], tolerance) {
+        if is_touch(arc, [start, end], tolerance) {
             continue;
         }
         if from < start {
@@ -194,11 +193,12 @@ fn united(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     all
 }
 
-/// Whether a covered range, less than the whole of an arc on a support, is no longer than where
-/// curves cross or touch: the arc stays whole there.
+/// Whether a covered range of an arc on a support is only where it crosses or touches others, so
+/// that the arc stays whole: the range is short, and not the whole arc.
 fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
     let is_supported = !matches!(arc, ImageArc::Projected(_));
-    is_supported && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
+    let is_whole = [a, b] == arc.range();
+    is_supported && !is_whole && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
 }
 
 /// The fractions of the length between two stops at which an arc is compared with another.

@@ -6,7 +6,7 @@
 //! smooth edge.
 
 use super::Finding;
-use super::strokes::{Strokes, is_outline, point};
+use super::strokes::{Strokes, is_outline};
 use nalgebra::{Point2, Vector2};
 use premio_csg::ray_casting::{Ray, RayOracle};
 use premio_drawing::Drawing;
@@ -172,7 +172,7 @@ impl ShadowOutline {
             follow(&course, STEPS);
         }
         let visible = drawing.strokes.iter().filter(|s| is_outline(s));
-        let ends = visible.flat_map(|s| [0.0, 1.0].map(|part| point(&s.shape, part)));
+        let ends = visible.flat_map(|s| [0.0, 1.0].map(|part| s.shape.point(part)));
         let ends: Vec<Point2<f64>> = ends.collect();
         for end in ends.iter().step_by(ends.len().div_ceil(ENDS).max(1)) {
             let course = |t: f64| {

@@ -77,39 +77,8 @@ pub(super) fn is_outline(stroke: &Stroke) -> bool {
     stroke.visible && stroke.layer != Layer::Smooth
 }
 
-/// The point of a shape at a fraction of its length, from 0 to 1.
-pub(super) fn point(shape: &StrokeShape, part: f64) -> Point2<f64> {
-    match shape {
-        StrokeShape::Line([a, b]) => a + (b - a) * part,
-        StrokeShape::Path(points) => {
-            let steps = points.windows(2).map(|p| (p[1] - p[0]).norm());
-            let mut left = part * steps.clone().sum::<f64>();
-            for (pair, step) in points.windows(2).zip(steps) {
-                if left <= step && step > 0.0 {
-                    return pair[0] + (pair[1] - pair[0]) * (left / step);
-                }
-                left -= step;
-            }
-            points.last().copied().unwrap_or_default()
-        }
-        StrokeShape::Ellipse { from, sweep, .. } => on_ellipse(shape, from + sweep * part),
-    }
-}
-
 fn minor(major: &Vector2<f64>, ratio: f64) -> Vector2<f64> {
     Vector2::new(-major.y, major.x) * ratio
-}
-
-fn on_ellipse(shape: &StrokeShape, s: f64) -> Point2<f64> {
-    match shape {
-        StrokeShape::Ellipse {
-            centre,
-            major,
-            ratio,
-            ..
-        } => centre + major * s.cos() + minor(major, *ratio) * s.sin(),
-        StrokeShape::Line(_) | StrokeShape::Path(_) => Point2::origin(),
-    }
 }
 
 /// The corners of the bounding box of a shape.
@@ -165,7 +134,7 @@ pub(super) fn distance(shape: &StrokeShape, p: &Point2<f64>) -> f64 {
             let (d, minor) = (p - centre, minor(major, *ratio));
             let x = d.dot(major) / major.norm_squared();
             let y = d.dot(&minor) / minor.norm_squared();
-            let ends = [*from, from + sweep].map(|s| (on_ellipse(shape, s) - p).norm());
+            let ends = [0.0, 1.0].map(|end| (shape.point(end) - p).norm());
             let end = ends[0].min(ends[1]);
             if (y.atan2(x) - from).rem_euclid(TAU) > *sweep {
                 return end;

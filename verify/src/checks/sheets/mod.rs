@@ -9,7 +9,7 @@ mod dxf;
 mod svg;
 
 use super::images::Images;
-use super::strokes::{Strokes, point};
+use super::strokes::Strokes;
 use super::window::Window;
 use nalgebra::Point2;
 use premio_drawing::sheet::{self, Sheet, SheetError, SheetView};
@@ -218,7 +218,7 @@ impl SheetReport {
             .enumerate()
             .step_by(read.len().div_ceil(MOST).max(1))
         {
-            let places = ON_STROKES.map(|part| point(&stroke.shape, part));
+            let places = ON_STROKES.map(|part| stroke.shape.point(part));
             for p in &places {
                 let on_contour = images.any(place(p), nearness(p), |passing| {
                     passing.visible == stroke.visible && passing.layer == stroke.layer

@@ -38,6 +38,7 @@ KNOWN = {
     "cone-rim-a-billionth-into-a-ring": "refused: an edge 1.6e-9 long",
     "cones-whose-branches-pass-by-1e-9": "refused: a face 7e-10 wide",
     "knob-off-by-4e-8": "refused: a face 2.9e-8 wide",
+    "knob-off-by-3e-7-along-its-axis": "refused: a face 1.5e-8 wide",
     "coplanar-faces-tilted-by-1e-7": "refused: edges of a face 9e-11 apart",
     "cones-1e-9-apart": "slivers smaller than the reader's tolerance",
     "cone-resting-on-top-of-torus": "a seam through a face that touches itself in a point",

@@ -299,7 +299,8 @@ impl<'a> Checker<'a> {
     /// Counts the faces in front of every piece, and looks for missing contours.
     fn contours(&self, name: &str, seen: &Contours) -> [Check; 2] {
         let clearance = self.clearance();
-        let counted = Recount::telling(&self.material, seen, &self.evaluation.bounds, &clearance);
+        let counted =
+            Recount::conclusive(&self.material, seen, &self.evaluation.bounds, &clearance);
         let outlines = Outlines::new(&self.material, seen, &clearance);
         let (finding, detail) = match displaced_ends(seen, &clearance).first() {
             Some(displaced) => (Finding::Fails, displaced.to_string()),

@@ -84,7 +84,7 @@ impl Recount {
     /// Recounts every piece. If too few samples could be counted, the lines of sight are moved
     /// closer: in the image of a part that nearly coincides with itself, contours are close to one
     /// another everywhere.
-    pub fn telling(
+    pub fn conclusive(
         material: &RayOracle,
         seen: &Contours,
         bounds: &Aabb,
@@ -258,19 +258,17 @@ impl Counter<'_> {
             .any(|lateral| *lateral < NEAR * self.clearance.lateral)
     }
 
-    /// Whether a limb sample has the image of another limb in front of it, nearer than rays resolve:
-    /// each ray that meets one face meets the other.
+    /// Whether another limb in front of a limb sample has the same image, within the distance up to
+    /// which slivers are ignored. A ray then hits both faces or neither, or the two limbs cross
+    /// there.
     fn is_behind_limb(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
         if sampled.contour.kind != ContourKind::Limb {
             return false;
         }
-        let finest = self.closer.last().unwrap_or(self.clearance).lateral;
         let here = self.window.image(place);
-        let scale = match self.projection.sight {
-            ViewRay::Eye(_) => here.depth,
-            ViewRay::Direction(_) => 1.0,
-        };
-        Images::new(self.seen, &self.window).any(here.at, finest / scale, |passing| {
+        let near = self.clearance.sliver / self.window.scale(here.depth);
+        let finest = self.closer.last().unwrap_or(self.clearance).lateral;
+        Images::new(self.seen, &self.window).any(here.at, near, |passing| {
             passing.layer == Layer::Limb
                 && passing.contour != sampled.contour.id
                 && passing.depth[0] < here.depth - finest

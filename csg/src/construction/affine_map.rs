@@ -28,7 +28,7 @@ impl AffineMap {
     }
 
     /// The map that leaves every point where it is.
-    pub(crate) fn identity() -> Self {
+    pub fn identity() -> Self {
         let one = [Rational::ONE, Rational::ONE, Rational::ONE];
         Self::scale(&one)
     }

@@ -96,6 +96,3 @@ impl ConstructionError {
         )
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -266,12 +266,9 @@ mod tests {
     use super::components;
     use crate::builder::{Builder, SolidId};
     use crate::evaluate::result_boxes::ResultBoxes;
-    use crate::evaluate::{EvaluationOptions, evaluate};
     use crate::primitive::Primitive;
     use crate::transform::Transform;
     use crate::tree::{Operation, Tree};
-    use approx::assert_relative_eq;
-    use premio_kernel::brep::topology::Topology;
     use premio_kernel::number::rational::Rational;
 
     /// A block of whole size with its least corner at a whole point.
@@ -301,51 +298,10 @@ mod tests {
         builder.finish(part).unwrap()
     }
 
-    fn is_consistent(topology: &Topology) -> bool {
-        let mut coedges = topology.edges.iter().zip(0..);
-        let mut faces = topology.faces.iter().zip(0..);
-        let mut shells = topology.shells.iter().zip(0..);
-        coedges.all(|(edge, id)| {
-            let mut own = edge.coedges.iter();
-            own.all(|&coedge| topology.coedge(coedge).edge.0 == id)
-        }) && faces.all(|(face, id)| face.loops.iter().all(|&of| topology.ring(of).face.0 == id))
-            && shells.all(|(shell, id)| {
-                let mut own = shell.faces.iter();
-                own.all(|&face| topology.face(face).shell.0 == id)
-            })
-    }
-
     #[test]
     fn each_piece_of_a_minuend_keeps_the_tools_that_reach_it() {
         let trees = divided(&two_blocks()).unwrap();
         assert_eq!(leaves(&trees), [2, 3]);
-    }
-
-    #[test]
-    fn the_boundary_of_components_is_that_of_the_part() {
-        let known = evaluate(&two_blocks(), &EvaluationOptions::default()).unwrap();
-        let mass = known.mass();
-        // Two blocks without their bars, and the corner of the second one.
-        assert_relative_eq!(mass.volume, 2.0 * (64.0 - 16.0) - 1.0, max_relative = 1e-12);
-        assert_relative_eq!(mass.area, 2.0 * (96.0 - 8.0 + 32.0), max_relative = 1e-12);
-        // The corner, at (13.5, 3.5, 3.5), moves the centroid from (7, 2, 2).
-        assert_relative_eq!(
-            mass.centroid.x,
-            (7.0 * 96.0 - 13.5) / 95.0,
-            max_relative = 1e-12
-        );
-        assert_relative_eq!(
-            mass.centroid.z,
-            (2.0 * 96.0 - 3.5) / 95.0,
-            max_relative = 1e-12
-        );
-        let topology = &known.brep.topology;
-        assert!(is_consistent(topology));
-        assert_eq!(topology.census().genus, [1, 1]);
-        assert_eq!(topology.solids.len(), 2);
-        assert_eq!(known.violations(), []);
-        let bounds = known.tight_bounds();
-        assert_eq!([bounds.min, bounds.max], [[0.0; 3], [14.0, 4.0, 4.0]]);
     }
 
     #[test]

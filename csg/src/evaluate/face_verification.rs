@@ -152,7 +152,8 @@ mod tests {
     use super::super::carrier_intersections::arrange;
     use super::super::halfspaces::HalfSpaceModel;
     use super::super::membership::Membership;
-    use super::super::{EvaluationOptions, MAX_ENTITIES, evaluate};
+    use super::super::settings::Settings;
+    use super::super::{EvaluationOptions, MAX_ENTITIES, evaluated};
     use super::*;
     use crate::reader::{Format, ReadOptions, read};
     use crate::tree::Tree;
@@ -181,12 +182,14 @@ mod tests {
 
     /// Whether a boundary is contradicted by the tree of the same primitives otherwise joined.
     fn is_contradicted(tree: &Tree, joined: &Tree) -> bool {
-        let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
         let solids = HalfSpaceModel::<f64>::new(tree);
+        let size = solids.bounds.diagonal();
+        let settings = Settings::new(&EvaluationOptions::default(), size);
+        let known = evaluated::<f64>(tree, &settings).unwrap();
         let predicates = Predicates::new(known.resolution);
         let extent = RegionOfInterest {
             centre: solids.bounds.centre(),
-            radius: 0.75 * solids.bounds.diagonal(),
+            radius: 0.75 * size,
         };
         let arranged = arrange(tree, &solids, &extent, &predicates, MAX_ENTITIES);
         let concern = CloseCallFilter {

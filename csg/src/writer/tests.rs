@@ -1,7 +1,6 @@
 //! Tests of the writers: written text is read as the same tree.
 
 use super::*;
-use crate::evaluate::{EvaluationOptions, evaluate};
 use crate::reader::{Program, ReadOptions, parse, read};
 use crate::tree::Tree;
 use insta::assert_snapshot;
@@ -276,18 +275,7 @@ fn many_copies_are_refused() {
     assert!(matches!(refused, Err(WriteError::TooManyLeaves { .. })));
 }
 
-/// OpenSCAD revolves no figure that crosses the axis, so the disc of a spindle torus is clipped.
 #[test]
-fn tori_that_cross_their_axis_are_clipped_for_openscad() {
-    let text = "P = TOR(RMAJ=3, RMIN=5)";
-    assert_same(text, Format::Padl, Format::Json);
-    let scad = tree(&written(text, Format::Padl, Format::Csg), Format::Csg);
-    let known = evaluate(&scad, &EvaluationOptions::default()).unwrap();
-    let original = evaluate(&tree(text, Format::Padl), &EvaluationOptions::default()).unwrap();
-    let [found, expected] = [&known, &original].map(|known| known.mass().volume);
-    assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-    assert_eq!(
-        known.brep.topology.census(),
-        original.brep.topology.census()
-    );
+fn json_holds_tori_that_cross_their_axis() {
+    assert_same("P = TOR(RMAJ=3, RMIN=5)", Format::Padl, Format::Json);
 }

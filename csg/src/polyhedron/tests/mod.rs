@@ -112,8 +112,6 @@ fn open_faces_are_refused_with_an_edge() {
     ));
 }
 
-mod solids;
-
 proptest! {
     /// Every point is on the inner side of every facet, and every facet's plane passes through its
     /// corners.

@@ -1,48 +1,32 @@
 //! Constructions against values derived by hand, and against rays.
 
-use super::*;
-use crate::builder::{Builder, SolidId};
-use crate::evaluate::{EvaluationOptions, evaluate};
-use crate::figure::{Figure, FigureOperation, OffsetJoin, PlaneMap};
-use crate::primitive::Primitive;
-use crate::ray_casting::RayOracle;
-use crate::transform::{Transform, TransformStep};
-use crate::tree::Operation;
-use premio_kernel::number::rational::Rational;
+use crate::common::{block, evaluated, n, rotated, shifted, turned};
+use premio_csg::builder::{Builder, SolidId};
+use premio_csg::construction::{
+    AffineMap, ConstructionError, ObliquePrism, convex_hull, mapped, minkowski_sum, section, shadow,
+};
+use premio_csg::figure::{Figure, FigureOperation, OffsetJoin, PlaneMap};
+use premio_csg::primitive::Primitive;
+use premio_csg::ray_casting::RayOracle;
+use premio_csg::tree::Operation;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-fn n(x: i32) -> Rational {
-    Rational::from(x)
-}
-
-fn block(builder: &mut Builder, size: [i32; 3]) -> SolidId {
-    builder.primitive(Primitive::block(size.map(n)).unwrap())
-}
-
 fn ball(builder: &mut Builder, radius: i32, at: [i32; 3]) -> SolidId {
     let ball = builder.primitive(Primitive::sphere(n(radius)).unwrap());
-    builder.moved(ball, Transform::shift(at.map(n)))
+    shifted(builder, ball, at)
 }
 
 fn cylinder(builder: &mut Builder, radius: i32, height: i32, at: [i32; 3]) -> SolidId {
     let part = builder.primitive(Primitive::cylinder(n(radius), n(height)).unwrap());
-    builder.moved(part, Transform::shift(at.map(n)))
-}
-
-fn turned(builder: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
-    let mut moves = Transform::new();
-    let (axis, degrees) = ([n(1), n(2), n(2)], n(degrees));
-    moves.push(TransformStep::Turn { axis, degrees }).unwrap();
-    builder.moved(part, moves)
+    shifted(builder, part, at)
 }
 
 /// Evaluates a solid, checks its volume and the rays', and returns the kinds of its surfaces.
 #[track_caller]
 fn check(builder: &Builder, part: SolidId, volume: f64) -> Vec<&'static str> {
     let tree = builder.finish(part).unwrap();
-    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
-    assert_eq!(known.violations(), []);
+    let known = evaluated(&tree);
     let found = known.mass().volume;
     assert!(
         (found - volume).abs() <= volume * 1e-11,
@@ -67,7 +51,7 @@ fn a_hull_of_blocks_is_a_polytope() {
     let mut b = Builder::new();
     let low = block(&mut b, [4, 4, 1]);
     let high = block(&mut b, [2, 2, 1]);
-    let high = b.moved(high, Transform::shift([1, 1, 4].map(n)));
+    let high = shifted(&mut b, high, [1, 1, 4]);
     let hull = convex_hull(&mut b, &[low, high], 0.0).unwrap().solid;
     // The lower slab, and a frustum of a pyramid from there to the top of the upper one.
     let frustum = 4.0 / 3.0 * (16.0 + 4.0 + 8.0);
@@ -156,18 +140,18 @@ fn a_disc_and_a_point_have_an_oblique_cone_as_hull() {
     let mut b = Builder::new();
     let plate = cylinder(&mut b, 3, 1, [0, 0, 0]);
     let tip = b.primitive(Primitive::frustum(n(2), n(0), n(6)).unwrap());
-    let tip = b.moved(tip, Transform::shift([5, 0, 0].map(n)));
+    let tip = shifted(&mut b, tip, [5, 0, 0]);
     let hull = convex_hull(&mut b, &[plate, tip], 0.0).unwrap().solid;
     let tree = b.finish(hull).unwrap();
-    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let known = evaluated(&tree);
     let rays = RayOracle::new(&tree).volume(1 << 15, 1);
     assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
     // The disc of the plate's top lies in the cone over its bottom, where the apex is high enough.
     let apex = b.primitive(Primitive::block([1, 1, 1].map(n)).unwrap());
-    let apex = b.moved(apex, Transform::shift([9, 0, 20].map(n)));
+    let apex = shifted(&mut b, apex, [9, 0, 20]);
     let hull = convex_hull(&mut b, &[plate, apex], 0.0).unwrap().solid;
     let tree = b.finish(hull).unwrap();
-    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let known = evaluated(&tree);
     let rays = RayOracle::new(&tree).volume(1 << 15, 1);
     assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
 }
@@ -216,8 +200,7 @@ fn a_bracket_is_rounded() {
     let unit = ball(&mut b, 1, [0, 0, 0]);
     let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
     let tree = b.finish(sum).unwrap();
-    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
-    assert_eq!(known.violations(), []);
+    let known = evaluated(&tree);
     let rays = RayOracle::new(&tree).volume(1 << 15, 1);
     assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
 }
@@ -235,7 +218,7 @@ fn sums_of_columns_and_of_polytopes() {
     let plate = block(&mut b, [5, 4, 3]);
     let sum = minkowski_sum(&mut b, &[plate, tilted]).unwrap();
     let tree = b.finish(sum).unwrap();
-    let known = evaluate(&tree, &EvaluationOptions::default()).unwrap();
+    let known = evaluated(&tree);
     let rays = RayOracle::new(&tree).volume(1 << 14, 1);
     assert!(rays.deviation(known.mass().volume, 1e-9) < 6.0, "{rays:?}");
 }
@@ -282,11 +265,11 @@ fn sections_and_shadows() {
     let bore = cylinder(&mut b, 8, 20, [20, 15, -1]);
     let part = b.operation(Operation::Difference, &[plate, bore]);
     let area = 1200.0 - 64.0 * PI;
-    let down = b.moved(part, Transform::shift([0, 0, -5].map(n)));
+    let down = shifted(&mut b, part, [0, 0, -5]);
     let close = |found: f64, area: f64| assert!((found - area).abs() < 1e-9, "{found} {area}");
     close(section(&b, down).unwrap().area(), area);
     close(shadow(&b, down).unwrap().area(), area);
-    let above = b.moved(part, Transform::shift([0, 0, 1].map(n)));
+    let above = shifted(&mut b, part, [0, 0, 1]);
     assert!(section(&b, above).is_err_and(|error| error.is_empty()));
     let unit = ball(&mut b, 5, [0, 0, 3]);
     close(section(&b, unit).unwrap().area(), 16.0 * PI);
@@ -295,7 +278,7 @@ fn sections_and_shadows() {
     let diagonal = turned(&mut b, cube, 0);
     close(shadow(&b, diagonal).unwrap().area(), 1.0);
     let wedge = b.primitive(Primitive::wedge([4, 3, 2].map(n)).unwrap());
-    let low = b.moved(wedge, Transform::shift([0, 0, -1].map(n)));
+    let low = shifted(&mut b, wedge, [0, 0, -1]);
     close(section(&b, low).unwrap().area(), 6.0);
     close(shadow(&b, low).unwrap().area(), 12.0);
 }
@@ -303,7 +286,7 @@ fn sections_and_shadows() {
 /// A block of 4 by 4 by 4 without a corner of 2 by 2 by 2.
 fn notched(b: &mut Builder) -> SolidId {
     let [whole, corner] = [4, 2].map(|size| block(b, [size; 3]));
-    let corner = b.moved(corner, Transform::shift([2; 3].map(n)));
+    let corner = shifted(b, corner, [2; 3]);
     b.operation(Operation::Difference, &[whole, corner])
 }
 
@@ -337,7 +320,7 @@ proptest! {
         let mut parts = vec![block(&mut b, [4; 3])];
         for tool in &tools {
             let part = block(&mut b, tool.map(|(_, size)| size));
-            parts.push(b.moved(part, Transform::shift(tool.map(|(at, _)| n(at)))));
+            parts.push(shifted(&mut b, part, tool.map(|(at, _)| at)));
         }
         let part = b.operation(Operation::Difference, &parts);
         let unit = block(&mut b, [1; 3]);
@@ -354,7 +337,7 @@ proptest! {
         let sums = cells.filter(|[x, y, z]| {
             (0..8).any(|k| has([x - k % 2, y - k / 2 % 2, z - k / 4]))
         });
-        let known = evaluate(&b.finish(sum).unwrap(), &EvaluationOptions::default()).unwrap();
+        let known = evaluated(&b.finish(sum).unwrap());
         let (found, count) = (known.mass().volume, sums.count() as f64);
         prop_assert!((found - count).abs() < 1e-9, "{} and not {}", found, count);
     }
@@ -368,23 +351,15 @@ fn a_difference_is_rounded() {
     let mut b = Builder::new();
     let prism = b.primitive(Primitive::prism(figure, n(3)).unwrap());
     let [whole, rest] = [[6, 6, 3], [5, 5, 5]].map(|size| block(&mut b, size));
-    let rest = b.moved(rest, Transform::shift([2, 2, -1].map(n)));
+    let rest = shifted(&mut b, rest, [2, 2, -1]);
     let bracket = b.operation(Operation::Difference, &[whole, rest]);
     let unit = ball(&mut b, 1, [0, 0, 0]);
     let [expected, sum] = [prism, bracket].map(|part| {
         let sum = minkowski_sum(&mut b, &[part, unit]).unwrap();
-        evaluate(&b.finish(sum).unwrap(), &EvaluationOptions::default()).unwrap()
+        evaluated(&b.finish(sum).unwrap())
     });
     let (expected, volume) = (expected.mass().volume, sum.mass().volume);
     assert!((volume - expected).abs() < 1e-10, "{volume} {expected}");
-}
-
-/// A solid rotated about x.
-fn tilted(b: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
-    let mut moves = Transform::new();
-    let (axis, degrees) = ([1, 0, 0].map(n), n(degrees));
-    moves.push(TransformStep::Turn { axis, degrees }).unwrap();
-    b.moved(part, moves)
 }
 
 /// Through the window of a tilted plate less is seen than its size, and from an angle whose tangent
@@ -393,10 +368,10 @@ fn tilted(b: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
 fn the_shadow_of_a_window() {
     let mut b = Builder::new();
     let [plate, window] = [[4, 4, 1], [2, 2, 3]].map(|size| block(&mut b, size));
-    let window = b.moved(window, Transform::shift([1, 1, -1].map(n)));
+    let window = shifted(&mut b, window, [1, 1, -1]);
     let part = b.operation(Operation::Difference, &[plate, window]);
     for (degrees, edges) in [(0, 8), (20, 8), (45, 8), (70, 4)] {
-        let tilted = tilted(&mut b, part, degrees);
+        let tilted = rotated(&mut b, part, [1, 0, 0], degrees);
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
         let area = 4.0 * (4.0 * cos + sin) - 2.0 * (2.0 * cos - sin).max(0.0);
         let found = shadow(&b, tilted).unwrap();
@@ -411,7 +386,7 @@ fn rounded_plate(b: &mut Builder, radius: i32, height: i32, z: i32) -> SolidId {
     let core = Figure::rectangle(&[8, 4].map(n)).unwrap();
     let figure = core.offset(&n(radius), OffsetJoin::Round).unwrap();
     let plate = b.primitive(Primitive::prism(figure, n(height)).unwrap());
-    b.moved(plate, Transform::shift([0, 0, z].map(n)))
+    shifted(b, plate, [0, 0, z])
 }
 
 #[test]
@@ -435,7 +410,7 @@ fn rounded_plates_have_cones_between_them() {
     let mut b = Builder::new();
     let low = rounded_plate(&mut b, 1, 1, 0);
     let high = rounded_plate(&mut b, 3, 1, 4);
-    let high = b.moved(high, Transform::shift([1, 0, 0].map(n)));
+    let high = shifted(&mut b, high, [1, 0, 0]);
     let hull = convex_hull(&mut b, &[low, high], 0.0).unwrap().solid;
     let volume = 4.0 * 32.0 + 24.0 * 8.0 + PI * 52.0 / 3.0 + 32.0 + 72.0 + 9.0 * PI;
     let surfaces = ["cylinder", "elliptic cone", "plane"];

@@ -1,8 +1,6 @@
 //! Tests of figures.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
-mod solids;
-
 use super::*;
 use proptest::prelude::*;
 
@@ -254,5 +252,25 @@ fn the_right_of_a_disc_is_half_of_it() {
         let turned = disc.mapped(&map).unwrap();
         let right = turned.right_of_axis().unwrap().unwrap();
         assert!((right.area() - 2.0 * std::f64::consts::PI).abs() < 1e-12);
+    }
+}
+
+/// A disc of radius 5 about a point 3 from the axis, on either side: half of the disc and the
+/// segment next to it, or less that segment.
+#[test]
+fn arcs_are_clipped_at_the_axis() {
+    let map = PlaneMap {
+        offset: [Rational::from(3), Rational::ZERO],
+        ..PlaneMap::identity()
+    };
+    let disc = Figure::disc(&Rational::from(5)).unwrap();
+    let disc = disc.mapped(&map).unwrap();
+    let segment = 25.0 * 0.6f64.asin() + 3.0 * 4.0;
+    for (disc, sign, reach) in [(&disc, 1.0, 8.0), (&disc.mirrored_x(), -1.0, 2.0)] {
+        let kept = disc.right_of_axis().unwrap().unwrap();
+        let [lo, hi] = kept.bounds();
+        assert!(lo[0].abs() < 1e-12 && (hi[0] - reach).abs() < 1e-12);
+        let area = 12.5 * std::f64::consts::PI + sign * segment;
+        assert!((kept.area() - area).abs() < 1e-12, "{}", kept.area());
     }
 }

@@ -1,28 +1,24 @@
 //! Prisms and revolutions: evaluated boundaries against values derived by hand, and against rays.
 
-use super::*;
-use crate::builder::{Builder, SolidId};
-use crate::evaluate::{Evaluation, EvaluationOptions, evaluate};
-use crate::primitive::{Primitive, RevolutionAngle};
-use crate::ray_casting::RayOracle;
-use crate::transform::{Transform, TransformStep};
-use crate::tree::{Operation, Tree};
+use crate::common::{evaluated, n, shifted, tree_of, turned};
+use premio_csg::evaluate::{EvaluationOptions, evaluate};
+use premio_csg::figure::{ContourCorner, Figure, FigureArc, FigureError, FigurePoint, PlaneMap};
+use premio_csg::primitive::{Primitive, RevolutionAngle};
+use premio_csg::ray_casting::RayOracle;
+use premio_csg::tree::Operation;
+use premio_kernel::number::rational::{Rational, to_f64};
+use proptest::prelude::*;
 use std::f64::consts::PI;
 
-fn n(x: i32) -> Rational {
-    Rational::from(x)
+const SQUARE: &[[i32; 2]] = &[[0, 0], [4, 0], [4, 4], [0, 4]];
+
+fn points(list: &[[i32; 2]]) -> Vec<FigurePoint> {
+    list.iter().map(|p| p.map(n)).collect()
 }
 
-fn tree_of(make: impl FnOnce(&mut Builder) -> SolidId) -> Tree {
-    let mut builder = Builder::new();
-    let part = make(&mut builder);
-    builder.finish(part).unwrap()
-}
-
-fn evaluated(tree: &Tree) -> Evaluation {
-    let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
-    assert_eq!(known.violations(), []);
-    known
+fn polygon(contours: &[&[[i32; 2]]]) -> Result<Figure, FigureError> {
+    let contours: Vec<Vec<FigurePoint>> = contours.iter().map(|c| points(c)).collect();
+    Figure::polygon(&contours)
 }
 
 /// Evaluates a primitive in a general position, checks its volume and the rays', and returns the
@@ -32,13 +28,7 @@ fn check(primitive: Primitive, volume: f64) -> [usize; 4] {
     for turn in [0, 37] {
         let tree = tree_of(|builder| {
             let part = builder.primitive(primitive.clone());
-            let mut moves = Transform::new();
-            let step = TransformStep::Turn {
-                axis: [n(1), n(2), n(2)],
-                degrees: n(turn),
-            };
-            moves.push(step).unwrap();
-            builder.moved(part, moves)
+            turned(builder, part, turn)
         });
         let known = evaluated(&tree);
         let found = known.mass().volume;
@@ -305,24 +295,6 @@ fn arcs_may_reach_the_axis() {
 }
 
 #[test]
-fn arcs_are_clipped_at_the_axis() {
-    // A disc about a point off the axis: what is kept is the figure of an apple.
-    let map = PlaneMap {
-        offset: [n(3), n(0)],
-        ..PlaneMap::identity()
-    };
-    let disc = Figure::disc(&n(5)).unwrap().mapped(&map).unwrap();
-    let kept = disc.right_of_axis().unwrap().unwrap();
-    let [lo, hi] = kept.bounds();
-    assert!(lo[0].abs() < 1e-12 && (hi[0] - 8.0).abs() < 1e-12);
-    let part = Primitive::revolution(kept, None).unwrap();
-    assert_eq!(check(part, swept_disc(3.0)), [0, 0, 0, 1]);
-    let kept = disc.mirrored_x().right_of_axis().unwrap().unwrap();
-    let part = Primitive::revolution(kept, None).unwrap();
-    assert_eq!(check(part, swept_disc(-3.0)), [0, 0, 0, 1]);
-}
-
-#[test]
 fn sections_combine_with_other_solids() {
     // A hole through a wall, at the corner of an L, and half outside.
     let tree = tree_of(|builder| {
@@ -332,7 +304,7 @@ fn sections_combine_with_other_solids() {
         ));
         let hole = Primitive::cylinder(n(1), n(4)).unwrap();
         let hole = builder.primitive(hole);
-        let hole = builder.moved(hole, Transform::shift([n(2), n(2), n(-1)]));
+        let hole = shifted(builder, hole, [2, 2, -1]);
         builder.operation(Operation::Difference, &[part, hole])
     });
     let known = evaluated(&tree);
@@ -360,7 +332,7 @@ fn a_disc_is_a_cylinder() {
     let [a, b] = [disc(), cylinder()].map(|round| {
         let tree = tree_of(|builder| {
             let round = builder.primitive(round);
-            let round = builder.moved(round, Transform::shift([n(6), n(4), n(0)]));
+            let round = shifted(builder, round, [6, 4, 0]);
             let other = builder.primitive(leaning.clone());
             builder.operation(Operation::Difference, &[round, other])
         });
@@ -435,7 +407,7 @@ fn a_gear_with_a_bore_is_evaluated() {
     let tree = tree_of(|builder| {
         let gear = builder.primitive(Primitive::prism(figure, n(10)).unwrap());
         let bore = builder.primitive(Primitive::cylinder(n(8), n(12)).unwrap());
-        let bore = builder.moved(bore, Transform::shift([n(0), n(0), n(-1)]));
+        let bore = shifted(builder, bore, [0, 0, -1]);
         builder.operation(Operation::Difference, &[gear, bore])
     });
     let known = evaluated(&tree);

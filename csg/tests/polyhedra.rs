@@ -1,43 +1,56 @@
 //! Polyhedra: evaluated boundaries against values derived by hand, against the same solids made of
 //! other primitives, and against rays.
 
-use super::*;
-use crate::builder::{Builder, SolidId};
-use crate::evaluate::{Evaluation, EvaluationError, EvaluationOptions, evaluate};
-use crate::figure::{Figure, FigureEdge};
-use crate::primitive::Primitive;
-use crate::ray_casting::{Ray, RayOracle};
-use crate::transform::{Transform, TransformStep};
-use crate::tree::{Operation, Tree};
+use crate::common::{evaluated, n, shifted, tree_of, turned};
+use nalgebra::Vector3;
+use premio_csg::evaluate::{EvaluationError, EvaluationOptions, evaluate};
+use premio_csg::figure::Figure;
+use premio_csg::polyhedron::{Polyhedron, PolyhedronFace, SpacePoint};
+use premio_csg::primitive::Primitive;
+use premio_csg::ray_casting::{Ray, RayOracle};
+use premio_csg::tree::Operation;
+use premio_kernel::number::rational::{Rational, to_f64};
+use proptest::prelude::*;
 use std::sync::Arc;
 
-fn n(x: i32) -> Rational {
-    Rational::from(x)
+fn points(all: &[[i32; 3]]) -> Vec<SpacePoint> {
+    all.iter().map(|p| p.map(n)).collect()
 }
 
-fn tree_of(make: impl FnOnce(&mut Builder) -> SolidId) -> Tree {
-    let mut builder = Builder::new();
-    let part = make(&mut builder);
-    builder.finish(part).unwrap()
+fn face<const N: usize>(corners: [usize; N]) -> PolyhedronFace {
+    PolyhedronFace::simple(corners.to_vec())
 }
 
-fn evaluated(tree: &Tree) -> Evaluation {
-    let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
-    assert_eq!(known.violations(), []);
-    known
+fn cube() -> Vec<SpacePoint> {
+    let corner = |i: i32| [i & 1, (i >> 1) & 1, (i >> 2) & 1].map(|x| 2 * x);
+    points(&(0..8).map(corner).collect::<Vec<_>>())
 }
+
+/// The faces of a cube whose corner `i` has the bits of `i` as coordinates.
+const CUBE_FACES: [[usize; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
 
 fn primitive(polyhedron: Polyhedron) -> Primitive {
     let polyhedron = Arc::new(polyhedron);
     Primitive::Polyhedron { polyhedron }
 }
 
-fn turned(builder: &mut Builder, part: SolidId, degrees: i32) -> SolidId {
-    let mut moves = Transform::new();
-    let axis = [n(1), n(2), n(2)];
-    let degrees = n(degrees);
-    moves.push(TransformStep::Turn { axis, degrees }).unwrap();
-    builder.moved(part, moves)
+/// The sum of the tetrahedra between the origin and the triangles of simple faces.
+fn volume_of(polyhedron: &Polyhedron) -> f64 {
+    let at = |i: usize| Vector3::from(polyhedron.points()[i].each_ref().map(to_f64));
+    let of = |face: &PolyhedronFace| -> f64 {
+        let corners: Vec<_> = face.corners().map(at).collect();
+        let fan = corners[1..].windows(2);
+        fan.map(|side| corners[0].dot(&side[0].cross(&side[1])))
+            .sum()
+    };
+    polyhedron.faces().iter().map(of).sum::<f64>() / 6.0
 }
 
 /// The polyhedron of an extruded polygon.
@@ -48,7 +61,11 @@ fn prism(figure: &Figure, height: i32) -> Polyhedron {
         starts.map(move |[x, y]| [x, y, n(z)])
     };
     let points: Vec<SpacePoint> = at(0).chain(at(height)).collect();
-    let loops = index_loops(figure.contours().map(<[FigureEdge]>::len));
+    let mut corners = 0..;
+    let loops = figure
+        .contours()
+        .map(|edges| corners.by_ref().take(edges.len()).collect());
+    let loops: Vec<Vec<usize>> = loops.collect();
     let wall = |of: &Vec<usize>| {
         let next = of.iter().cycle().skip(1);
         let walls = of.iter().zip(next);
@@ -59,7 +76,9 @@ fn prism(figure: &Figure, height: i32) -> Polyhedron {
     let up = |of: &Vec<usize>| of.iter().map(|i| i + count).collect();
     let top = loops.iter().map(up).collect();
     faces.push(PolyhedronFace { loops: top });
-    faces.push(PolyhedronFace { loops }.reversed());
+    let down = |of: &Vec<usize>| of.iter().rev().copied().collect();
+    let bottom = loops.iter().map(down).collect();
+    faces.push(PolyhedronFace { loops: bottom });
     Polyhedron::from_faces(&points, &faces).unwrap().polyhedron
 }
 
@@ -141,7 +160,7 @@ fn star() -> Polyhedron {
 #[test]
 fn a_star_is_cut_like_any_solid() {
     let star = star();
-    let volume = sixfold(&star) / 6.0;
+    let volume = volume_of(&star);
     // An octahedron of 32/3, and eight pyramids on triangles of area 2 sqrt(3), 7/sqrt(3) high.
     assert!((volume - (32.0 / 3.0 + 8.0 * 14.0 / 3.0)).abs() < 1e-12);
     let whole = evaluated(&tree_of(|b| b.primitive(primitive(star.clone()))));
@@ -216,8 +235,7 @@ fn stars_that_share_faces_join() {
         let tree = tree_of(|builder| {
             let one = builder.primitive(primitive(star()));
             let other = builder.mirrored_y(one);
-            let shift = Transform::shift([x, y, z].map(n));
-            let other = builder.moved(other, shift);
+            let other = shifted(builder, other, [x, y, z]);
             builder.operation(Operation::Union, &[one, other])
         });
         let known = evaluated(&tree);
@@ -245,7 +263,7 @@ proptest! {
         let tree = tree_of(|b| b.primitive(primitive(star())));
         let rays = RayOracle::new(&tree);
         let shift = if off { 1.0 / 64.0 } else { 0.0 };
-        let at = |p: [i32; 3]| nalgebra::Vector3::from(p.map(f64::from)).add_scalar(shift);
+        let at = |p: [i32; 3]| Vector3::from(p.map(f64::from)).add_scalar(shift);
         let (start, direction) = (at(from), at(to) - at(from));
         let origin = start.into();
         let inside = rays.intervals(&Ray { origin, direction }, 1e-9);
@@ -267,7 +285,7 @@ proptest! {
         let Ok(hull) = Polyhedron::convex_hull(&points(&all)) else {
             return Ok(());
         };
-        let volume = sixfold(&hull) / 6.0;
+        let volume = volume_of(&hull);
         let tree = tree_of(|builder| {
             let part = builder.primitive(primitive(hull.clone()));
             turned(builder, part, degrees)

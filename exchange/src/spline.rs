@@ -178,8 +178,8 @@ pub(crate) struct Follow<'a> {
 impl Follow<'_> {
     /// The splines.
     pub fn course(&self) -> Result<BezierSegments, SplineError> {
-        let [lo, hi] = self.range;
-        let breaks = self.curve.breaks(lo, hi);
+        let lo = self.range[0];
+        let breaks = self.breaks();
         let first = [breaks[0], breaks[1]];
         let mut nodes = vec![self.node(first, lo, None)];
         for pair in breaks.windows(2) {
@@ -227,6 +227,19 @@ impl Follow<'_> {
             on: on.collect(),
             space: Spline::through(knots.clone(), &space),
         })
+    }
+
+    /// The ends of the smooth pieces of the curve, apart so far that the knots of a spline there are
+    /// distinct for its readers.
+    fn breaks(&self) -> Vec<f64> {
+        let [lo, hi] = self.range;
+        let all = self.curve.breaks(lo, hi);
+        let apart = APART * (hi - lo);
+        let inner = all.into_iter().filter(|t| t - lo > apart && hi - t > apart);
+        let mut breaks: Vec<f64> = std::iter::once(lo).chain(inner).collect();
+        breaks.dedup_by(|b, a| *b - *a <= apart);
+        breaks.push(hi);
+        breaks
     }
 
     /// Shifts the parameters into their windows.
@@ -380,6 +393,9 @@ impl Follow<'_> {
         self.curve.point(t)
     }
 }
+
+/// The least distance of the ends of smooth pieces, relative to the range.
+const APART: f64 = 1.0 / (1 << 30) as f64;
 
 /// The distance from its ends, relative to the range, at which the curve is evaluated in their
 /// place.

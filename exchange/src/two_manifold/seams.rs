@@ -11,6 +11,7 @@ mod splitting;
 
 use super::SeamError;
 use super::gaps::{Samples, axes};
+use super::short::length;
 use super::tracks::{Course, Track, elliptic_meridian, meridian, tube};
 use crate::parameters::{ParameterWindow, with_axis};
 use nalgebra::{Point3, Vector3};
@@ -119,6 +120,12 @@ impl Cut {
             let place = place.unwrap_or(brep.surface(face).frame().origin).into();
             SeamError::Blocked { face, place }
         })
+    }
+
+    /// Whether a seam is so short that other kernels may take it for a point.
+    fn has_short_seam(&self) -> bool {
+        let mut lengths = self.seams.iter().map(|s| length(&s.curve, s.range));
+        lengths.any(|length| length <= SHORT * self.window.reach)
     }
 }
 
@@ -548,6 +555,9 @@ fn tube_track(surface: &Surface, s: &Torus, at: f64, start: f64) -> Track {
 
 /// The number of starting points tried for a closed seam.
 const STARTS: usize = 4;
+/// The length of a short seam, relative to the greatest distance of an edge from the surface's
+/// centre.
+const SHORT: f64 = 1.0 / (1 << 20) as f64;
 /// The number of axes tried for a sphere that the first axis cuts into pieces.
 const AXES: usize = 16;
 
@@ -555,19 +565,18 @@ fn cuts_something(cut: &Option<Cut>) -> bool {
     cut.as_ref().is_some_and(|cut| !cut.seams.is_empty())
 }
 
-/// The first cut with the fewest seams; a cut without seams is returned at once.
+/// The first cut with the fewest seams, among those without a short one if there are any; a cut
+/// without seams is returned at once.
 fn least(cuts: impl Iterator<Item = Option<Cut>>) -> Option<Cut> {
-    let mut best: Option<Cut> = None;
+    let mut best: Option<((bool, usize), Cut)> = None;
     for cut in cuts.flatten() {
         if cut.seams.is_empty() {
             return Some(cut);
         }
-        if best
-            .as_ref()
-            .is_none_or(|b| cut.seams.len() < b.seams.len())
-        {
-            best = Some(cut);
+        let rank = (cut.has_short_seam(), cut.seams.len());
+        if best.as_ref().is_none_or(|(least, _)| rank < *least) {
+            best = Some((rank, cut));
         }
     }
-    best
+    best.map(|(_, cut)| cut)
 }

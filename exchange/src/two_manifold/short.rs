@@ -11,8 +11,9 @@ const STEPS: u32 = 16;
 
 impl TwoManifold<'_> {
     /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
-    /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop, and
-    /// one that turns around an apex: without it the loop would be open in the angle.
+    /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop. So
+    /// does a seam, and an edge that turns around an apex: without it a loop would be open in the
+    /// angle.
     pub(crate) fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
@@ -26,7 +27,9 @@ impl TwoManifold<'_> {
             let is_alone =
                 |ring: &[HalfEdge]| ring.iter().any(|h| h.edge == edge) && ring.len() < 3;
             let mut rings = self.faces.iter().flat_map(|face| &face.loops);
-            let is_needed = rings.any(|ring| is_alone(ring)) || self.turns_around_apex(edge);
+            let is_seam = self.edges[edge].source.is_none();
+            let closes = is_seam || self.turns_around_apex(edge);
+            let is_needed = closes || rings.any(|ring| is_alone(ring));
             if a == b || (p - q).norm() > least || is_needed {
                 continue;
             }

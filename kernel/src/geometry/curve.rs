@@ -332,7 +332,7 @@ impl<N: Float> Curve<N> {
             });
             breaks.extend(within.filter(|t| lo < *t && *t < hi));
             breaks.sort_by(N::total_cmp);
-            breaks.dedup();
+            breaks.dedup_by(|b, a| *b - *a <= N::ROUNDING * period);
         }
         breaks.push(hi);
         breaks

@@ -12,8 +12,8 @@ const STEPS: u32 = 16;
 impl TwoManifold<'_> {
     /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
     /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop. So
-    /// does a seam, and an edge that turns around an apex: without it a loop would be open in the
-    /// angle.
+    /// does a seam to a pole, and an edge that turns around an apex: without it a loop would be open
+    /// in the angle.
     pub(crate) fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
@@ -27,8 +27,7 @@ impl TwoManifold<'_> {
             let is_alone =
                 |ring: &[HalfEdge]| ring.iter().any(|h| h.edge == edge) && ring.len() < 3;
             let mut rings = self.faces.iter().flat_map(|face| &face.loops);
-            let is_seam = self.edges[edge].source.is_none();
-            let closes = is_seam || self.turns_around_apex(edge);
+            let closes = self.ends_at_pole(edge) || self.turns_around_apex(edge);
             let is_needed = closes || rings.any(|ring| is_alone(ring));
             if a == b || (p - q).norm() > least || is_needed {
                 continue;
@@ -47,6 +46,16 @@ impl TwoManifold<'_> {
 }
 
 impl TwoManifold<'_> {
+    /// Whether an edge is a seam to a pole or an apex inside its face: no other edge ends there.
+    fn ends_at_pole(&self, edge: usize) -> bool {
+        let is_shared = |end: &usize| {
+            let mut others = self.edges.iter().enumerate();
+            others.any(|(other, e)| other != edge && e.ends.contains(end))
+        };
+        let seam = &self.edges[edge];
+        seam.source.is_none() && !seam.ends.iter().all(is_shared)
+    }
+
     /// Whether the angle about the axis of a face with an apex changes along an edge by more than little.
     fn turns_around_apex(&self, edge: usize) -> bool {
         let SeamedEdge { curve, range, .. } = &self.edges[edge];

@@ -319,7 +319,8 @@ fn general(
     resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if falls_on(a, b, projection, IMAGE_TOLERANCE * resolution) {
+    let near = IMAGE_TOLERANCE * resolution;
+    if falls_on(a, b, projection, near) {
         return Overlap::Yes;
     }
     let middle = a.curve.point(0.5 * (a.range[0] + a.range[1]));
@@ -335,12 +336,12 @@ fn general(
                 let row = |i: usize| dot(&form.row(i).transpose(), p);
                 (p[0] * row(0) + p[1] * row(1) + p[2] * row(2)).scale(scale)
             };
-            isolate(&f, breaks, resolution)
+            isolate(&f, breaks, near)
         }
         other => {
             let line = other.line().copied().unwrap_or_else(Vector3::z);
             let line = line / line.x.hypot(line.y);
-            isolate(&|t: Interval| dot(&line, image(t)), breaks, resolution)
+            isolate(&|t: Interval| dot(&line, image(t)), breaks, near)
         }
     };
     let mut together = 0.0;

@@ -14,6 +14,7 @@ use crate::image_curve::flat_point;
 use crate::image_curve::monotone_arc::{DirectionCone, MonotoneArc, dot2, simple_run};
 use crate::junction::intersect::{Overlap, overlap_of, place_of};
 use crate::junction::overlap::{Runs, Shared};
+use crate::scene::tolerance::IMAGE_TOLERANCE;
 use nalgebra::Point3;
 use premio_kernel::geometry::curve::Curve;
 use premio_kernel::number::bisection::{ValueAndSlope, bisect_newton};
@@ -310,7 +311,7 @@ impl<'x> Graphs<'x> {
         if self.transversal() {
             return common.roots.extend(self.once([lo, hi], resolution));
         }
-        match isolate(&self, &[lo, hi], resolution) {
+        match isolate(&self, &[lo, hi], IMAGE_TOLERANCE * resolution) {
             Roots::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Roots::At { roots, .. } => {
                 let [a, b] = self.contour_arcs;

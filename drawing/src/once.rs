@@ -8,6 +8,7 @@
 
 use super::image_arc::ImageArc;
 use super::image_arcs::DrawnArc;
+use super::projected_arc::Sample;
 use super::supports::on_supports;
 use super::{Layer, Stroke};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -49,7 +50,8 @@ pub fn strokes(arcs: Vec<DrawnArc<'_>>, tolerance: f64) -> Vec<Stroke> {
         arc: drawn.arc,
     });
     let is_projected = |a: &RankedArc<'_>| matches!(a.arc, ImageArc::Projected(_));
-    let (mut projected, supported): (Vec<_>, Vec<_>) = ranked.partition(is_projected);
+    let (folded, supported): (Vec<_>, Vec<_>) = ranked.partition(is_projected);
+    let mut projected: Vec<RankedArc<'_>> = folded.iter().flat_map(unfolded).collect();
     projected.retain(|a| a.arc.reach() > tolerance);
     let mut all = on_supports(supported, tolerance);
     let first = |a: &RankedArc<'_>| (a.rank, is_projected(a));
@@ -61,6 +63,27 @@ pub fn strokes(arcs: Vec<DrawnArc<'_>>, tolerance: f64) -> Vec<Stroke> {
         canvas.draw(arc);
     }
     canvas.strokes
+}
+
+/// The parts of an arc between the places where it turns back, as a curve does next to a node. They
+/// may lie on one another.
+fn unfolded<'c>(RankedArc { rank, arc }: &RankedArc<'c>) -> Vec<RankedArc<'c>> {
+    let [lo, hi] = arc.range();
+    let mut stops = vec![lo];
+    if let ImageArc::Projected(arc) = arc {
+        let turns_back = |s: &&[Sample]| {
+            let [before, after] = [s[1].point - s[0].point, s[2].point - s[1].point];
+            before.dot(&after) < 0.0
+        };
+        let folds = arc.samples().windows(3).filter(turns_back);
+        stops.extend(folds.map(|s| s[1].t));
+    }
+    stops.push(hi);
+    let parts = stops.windows(2).map(|range| RankedArc {
+        rank: *rank,
+        arc: arc.part([range[0], range[1]]),
+    });
+    parts.collect()
 }
 
 /// The drawn arcs, indexed by their boxes.
@@ -198,7 +221,7 @@ fn united(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 fn is_touch(arc: &ImageArc<'_>, [a, b]: [f64; 2], tolerance: f64) -> bool {
     let is_supported = !matches!(arc, ImageArc::Projected(_));
     let is_whole = [a, b] == arc.range();
-    is_supported && !is_whole && (arc.point(b) - arc.point(a)).norm() <= TOUCHING * tolerance
+    is_supported && !is_whole && arc.part([a, b]).length() <= TOUCHING * tolerance
 }
 
 /// The fractions of the length between two stops at which an arc is compared with another.
@@ -284,8 +307,7 @@ impl<'a, 'c> Search<'a, 'c> {
             }
         }
         let ends = runs.iter().map(|run| self.ends(run, other));
-        let length = |[a, b]: [f64; 2]| (self.arc.point(b) - self.arc.point(a)).norm();
-        ends.filter(|run| length(*run) > TOUCHING * self.tolerance)
+        ends.filter(|run| self.arc.part(*run).length() > TOUCHING * self.tolerance)
             .collect()
     }
 
@@ -318,7 +340,7 @@ impl<'a, 'c> Search<'a, 'c> {
 #[cfg(test)]
 mod tests {
     use super::super::image_arc::ImageEllipse;
-    use super::super::projected_arc::{ProjectedArc, Sample};
+    use super::super::projected_arc::ProjectedArc;
     use super::*;
     use nalgebra::{Point2, Vector2};
     use std::f64::consts::{PI, TAU};
@@ -426,6 +448,19 @@ mod tests {
             let arcs = vec![drawn(curve(slope), true), drawn(short, false)];
             assert_eq!(strokes(arcs, TOLERANCE).len(), count, "{slope}");
         }
+    }
+
+    /// x = t², y = 0 over [-1, 1] runs from 1 to 0 and back. It is drawn once, and not at all where a
+    /// line runs.
+    #[test]
+    fn a_curve_that_turns_back_is_drawn_once() {
+        let curve = |t: f64| Point2::new(t * t, 0.0);
+        let samples = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|t| Sample { t, point: curve(t) });
+        let back = ImageArc::Projected(ProjectedArc::new(Rc::new(curve), samples.to_vec()));
+        let alone = strokes(vec![drawn(back.clone(), true)], TOLERANCE);
+        assert_eq!(lengths(&alone), [1.0, 0.0]);
+        let arcs = vec![drawn(segment([-1.0, 2.0], 0.0), true), drawn(back, false)];
+        assert_eq!(lengths(&strokes(arcs, TOLERANCE)), [3.0, 0.0]);
     }
 
     /// A whole circle behind half of itself, whose parameters begin elsewhere.

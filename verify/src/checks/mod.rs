@@ -326,8 +326,8 @@ impl<'a> Checker<'a> {
         let projection = Projection::new(&seen.camera, clearance.size);
         let drawing = Drawing::new(seen, &premio_drawing::DrawingOptions::default());
         let size = (drawing.extent[1] - drawing.extent[0]).norm();
-        // Lengths in the image are larger by the ratio of its size to the part's.
-        let near = clearance.shift * size / clearance.size;
+        let centre = self.evaluation.bounds.centre();
+        let near = projection.magnification(&centre) * clearance.shift.max(clearance.sliver);
         let tolerance = shadow::Tolerance {
             image: near + drawing.tolerance + 2.0 * drawing.distance,
             sliver: clearance.sliver,

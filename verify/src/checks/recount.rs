@@ -5,7 +5,6 @@ use super::images::Images;
 use super::window::Window;
 use nalgebra::Point3;
 use premio_csg::ray_casting::{Clearance, RayOracle, SightEvidence, SightSegment};
-use premio_drawing::Layer;
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::predicates::ROUNDING;
 use premio_visibility::Contours;
@@ -212,8 +211,8 @@ impl Counter<'_> {
         }
         let is_on_fold = folds && given == counted + 1 && !piece.visible;
         // The count may depend on the distance of the rays.
-        let is_behind_fold = || given == counted + 1 && self.is_behind_limb(sampled, place);
-        if is_on_fold || !self.is_stable(place, counted) || is_behind_fold() {
+        let is_behind_other = || given == counted + 1 && self.is_behind_contour(sampled, place);
+        if is_on_fold || !self.is_stable(place, counted) || is_behind_other() {
             return SampleVerdict::Ambiguous;
         }
         SampleVerdict::Wrong(WrongPiece {
@@ -258,10 +257,10 @@ impl Counter<'_> {
             .any(|lateral| *lateral < NEAR * self.clearance.lateral)
     }
 
-    /// Whether another limb in front of a limb sample has the same image, within the distance up to
-    /// which slivers are ignored. A ray then hits both faces or neither, or the two limbs cross
-    /// there.
-    fn is_behind_limb(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
+    /// Whether another contour in front of a limb sample has the same image, within the distance up
+    /// to which slivers are ignored. A ray then hits both faces or neither, or the two contours
+    /// cross there.
+    fn is_behind_contour(&self, sampled: &SampledPiece<'_>, place: &Point3<f64>) -> bool {
         if sampled.contour.kind != ContourKind::Limb {
             return false;
         }
@@ -269,9 +268,7 @@ impl Counter<'_> {
         let near = self.clearance.sliver / self.window.scale(here.depth);
         let finest = self.closer.last().unwrap_or(self.clearance).lateral;
         Images::new(self.seen, &self.window).any(here.at, near, |passing| {
-            passing.layer == Layer::Limb
-                && passing.contour != sampled.contour.id
-                && passing.depth[0] < here.depth - finest
+            passing.contour != sampled.contour.id && passing.depth[0] < here.depth - finest
         })
     }
 

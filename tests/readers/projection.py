@@ -44,7 +44,6 @@ KNOWN = {
     "own-cone-in-cyl--1e-7": CLOSE,
     "ring-tilted-by-2e-13-in-a-wedge": SHIFTED,
     "sphere-tests.csg": LOST,
-    "steep-part-at-the-end-of-an-edge": FALSE,
 }
 # Directions to the eye; z is up.
 VIEWS = [(0.3, -0.8, 0.52), (0.71, 0.2, 0.67), (-0.5, 0.6, -0.62)]

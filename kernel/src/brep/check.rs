@@ -5,11 +5,13 @@ use super::cycle_space;
 use super::disjoint_union::Renumbering;
 use super::end_gaps::{EndGap, gaps_at_ends};
 use super::face_integrals::{FaceArea, FaceDifference, FaceIntegrals};
-use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, ShellId, TouchId, VertexId};
+use super::topology::{CoedgeId, EdgeId, FaceId, LoopId, Sense, ShellId, TouchId, VertexId};
+use crate::geometry::surface::Surface;
 use crate::geometry::vector::Length;
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::Point3;
+use std::collections::BTreeMap;
 
 /// A rule that a boundary breaks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -79,6 +81,17 @@ pub enum Violation {
         /// The area, in square units.
         area: f64,
     },
+    /// The faces of one side of a closed surface are larger together than the surface. They overlap:
+    /// loops of one face were taken for the loops of several.
+    #[error("face {} overlaps another one: the faces of its surface have the area {area:e} of {whole:e}", face.0)]
+    Overlap {
+        /// The last one of the faces.
+        face: FaceId,
+        /// The sum of their areas, in square units.
+        area: f64,
+        /// The area of the surface.
+        whole: f64,
+    },
     /// The integrals over a face depend on how its edges are divided.
     #[error("face {} has the area {} or {}, depending on the division of its edges", face.0, areas[0], areas[1])]
     Integral {
@@ -140,6 +153,11 @@ impl Violation {
             Self::Area { face, area } => Self::Area {
                 face: ids.face(face),
                 area,
+            },
+            Self::Overlap { face, area, whole } => Self::Overlap {
+                face: ids.face(face),
+                area,
+                whole,
             },
             Self::Integral { face, areas } => Self::Integral {
                 face: ids.face(face),
@@ -217,7 +235,9 @@ pub fn check<N: Float>(
     check_touches(brep, resolution, &mut found);
     check_genera(brep, &mut found);
     check_shells(brep, measures, &mut found);
-    check_areas(brep, measures, &mut found);
+    let areas = measures.areas(brep);
+    check_areas(&areas, &mut found);
+    check_overlaps(brep, &areas, &mut found);
     found
 }
 
@@ -232,14 +252,39 @@ pub fn check_integrals<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>) ->
 }
 
 /// A face with a negative area has a loop that was misclassified.
-fn check_areas<N: Float>(brep: &Brep<N>, measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
-    for (i, FaceArea { area, noise }) in measures.areas(brep).into_iter().enumerate() {
+fn check_areas<N: Float>(areas: &[FaceArea<N>], found: &mut Vec<Violation>) {
+    for (i, &FaceArea { area, noise }) in areas.iter().enumerate() {
         // The area of a sliver may be rounding.
         if area.is_nan() || area.is_at_most(-noise) {
             found.push(Violation::Area {
                 face: FaceId(i as u32),
                 area: area.rounded(),
             });
+        }
+    }
+}
+
+/// The part of a closed surface by which its faces may exceed it: the error of their areas.
+const EXCESS: f64 = 1.0 / (1 << 10) as f64;
+
+/// Compares the faces of each closed surface with the whole surface.
+fn check_overlaps<N: Float>(brep: &Brep<N>, areas: &[FaceArea<N>], found: &mut Vec<Violation>) {
+    let whole = |surface: &Surface<N>| match surface {
+        Surface::Sphere(s) => Some(N::TWO * N::TAU * s.radius * s.radius),
+        Surface::Torus(t) if t.is_ring() => Some(N::TAU * N::TAU * t.major * t.minor),
+        _ => None,
+    };
+    let mut sums: BTreeMap<(usize, bool), N> = BTreeMap::new();
+    for (face, &FaceArea { area, .. }) in brep.topology.face_ids().zip(areas) {
+        let Some(whole) = whole(brep.surface(face)) else {
+            continue;
+        };
+        let side = (brep.carrier(face), brep.sense(face) == Sense::Along);
+        let sum = sums.entry(side).or_insert(N::ZERO);
+        *sum += area;
+        if (*sum - whole).is_beyond(N::from_f64(EXCESS) * whole) {
+            let (area, whole) = (sum.rounded(), whole.rounded());
+            found.push(Violation::Overlap { face, area, whole });
         }
     }
 }

@@ -101,6 +101,14 @@ impl<N: Float> Brep<N> {
         &self.geometry.surfaces[self.geometry.patches[face.0 as usize].surface]
     }
 
+    /// The index of a face's surface. Faces of one surface have the same.
+    ///
+    /// # Panics
+    /// The boundary has no such face.
+    pub fn carrier(&self, face: FaceId) -> usize {
+        self.geometry.patches[face.0 as usize].surface
+    }
+
     /// The sense of a face's surface.
     ///
     /// # Panics

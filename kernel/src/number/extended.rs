@@ -96,9 +96,15 @@ impl F237 {
             return Self(x.0.exp_m1());
         }
         if x > Self::from_f64(GREAT) {
-            let k = (x.rounded() / std::f64::consts::LN_2).floor();
-            let rest = x - Self(consts::LN_2) * Self::from_f64(k);
-            let mantissa = Float::max(rest, Self::ZERO).growth() + Self::ONE;
+            // In f64, x next to a multiple of ln 2 may round up to it.
+            let near = (x.rounded() / std::f64::consts::LN_2).floor();
+            let rest = |k: f64| x - Self(consts::LN_2) * Self::from_f64(k);
+            let k = if rest(near) < Self::ZERO {
+                near - 1.0
+            } else {
+                near
+            };
+            let mantissa = rest(k).growth() + Self::ONE;
             return Self(mantissa.0.mul_pow2(k as u32)) - Self::ONE;
         }
         let halvings = if x < Self(power(-8)) {

@@ -20,6 +20,7 @@ use crate::geometry::surface::{Plane, Surface};
 use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
+use following::PathEnd;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use torus::Turns;
 
@@ -259,7 +260,7 @@ impl<N: Float> Sorter<'_, N> {
         mut legs: Vec<SurfacePath<N>>,
         attempt: usize,
     ) -> bool {
-        let mut goal = None;
+        let mut end = PathEnd::Surface;
         if let Some(apex) = lowest(self.surface)
             && let Some(down) = legs.pop()
         {
@@ -277,11 +278,11 @@ impl<N: Float> Sorter<'_, N> {
                 legs.push(down.upto(height));
                 legs.extend(round);
             } else {
-                goal = Some(self.parent.len() - 1);
+                end = PathEnd::Point(self.parent.len() - 1);
                 legs.push(down.upto(height));
             }
         }
-        self.follow(ring, start.arc, &start.point, &start.left, &legs, goal)
+        self.follow(ring, start.arc, &start.point, &start.left, &legs, end)
     }
 
     /// A turn along the parallel into the face, then downwards.
@@ -315,7 +316,7 @@ impl<N: Float> Sorter<'_, N> {
                 };
                 let walk = walk.toward(point, left);
                 let walk = walk.upto(walk.at(&target));
-                self.follow(ring, *arc, point, left, &[walk], Some(goal))
+                self.follow(ring, *arc, point, left, &[walk], PathEnd::Point(goal))
             }
             Surface::Plane(plane) => {
                 let d = direction_in_plane(plane, attempt);
@@ -324,7 +325,7 @@ impl<N: Float> Sorter<'_, N> {
                 if !is_reversed && self.follow_to_next(ring, start, &walk) {
                     return true;
                 }
-                self.follow(ring, *arc, point, left, &[walk], None)
+                self.follow(ring, *arc, point, left, &[walk], PathEnd::Surface)
             }
             Surface::Cylinder(_)
             | Surface::Cone(_)

@@ -9,6 +9,22 @@ use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::{Point3, Vector3};
 
+/// Where a path ends.
+#[derive(Clone, Copy)]
+pub(super) enum PathEnd {
+    /// At its start, or at the end of the surface.
+    Surface,
+    /// At a fixed point, which may be in a region. The number stands for the region of that point.
+    Point(usize),
+    /// Next to an arc of a loop: in the region that the loop bounds, or on its other side.
+    Arc {
+        /// The loop.
+        ring: usize,
+        /// Whether it is in that region.
+        is_inside: bool,
+    },
+}
+
 /// What a path over the surface determines.
 struct FollowedPath {
     /// The loop through which the path entered the region in which it is.
@@ -45,18 +61,28 @@ impl FollowedPath {
         Some(())
     }
 
-    /// The path with its last region joined to the goal, if it ends in one.
-    fn ended_in(mut self, goal: usize) -> Self {
-        self.joined.extend(self.inside.map(|from| [from, goal]));
+    /// The path with its last region joined to that of the fixed point at its end, if it ends in one.
+    fn ended_at(mut self, point: usize) -> Self {
+        self.joined.extend(self.inside.map(|from| [from, point]));
         self
+    }
+
+    /// The path with its last region joined to that of the loop at its end; `None` if it does not end
+    /// on the expected side of that loop. On the other side it has just left through it.
+    fn ended_next_to(mut self, ring: usize, is_inside: bool) -> Option<Self> {
+        match (self.inside, is_inside) {
+            (Some(from), true) => self.joined.push([from, ring]),
+            (None, false) if self.joined.last().is_some_and(|last| last[1] == ring) => {}
+            _ => return None,
+        }
+        Some(self)
     }
 }
 
 impl<N: Float> Sorter<'_, N> {
-    /// Follows the legs of a path and joins the loops that it crosses; `goal` is joined if the path
-    /// ends inside. The path starts into the region of the loop. A path downwards may also
-    /// start into the region on the other side of the edge, if there is one. Returns false if
-    /// anything is unclear.
+    /// Follows the legs of a path and joins the loops that it crosses. The path starts into the region
+    /// of the loop. A path downwards may also start into the region on the other side of the edge, if
+    /// there is one. Returns false if anything is unclear.
     pub(super) fn follow(
         &mut self,
         ring: usize,
@@ -64,7 +90,7 @@ impl<N: Float> Sorter<'_, N> {
         p: &Point3<N>,
         left: &Vector3<N>,
         legs: &[SurfacePath<N>],
-        goal: Option<usize>,
+        end: PathEnd,
     ) -> bool {
         let heading = legs[0].direction(p).dot(left);
         // A leg that ends close to the arc has not left it; the next leg may lead to its other
@@ -77,10 +103,11 @@ impl<N: Float> Sorter<'_, N> {
             return false;
         };
         let followed = self.followed(inside, arc, legs);
-        let ended = match goal {
-            Some(goal) => followed.map(|path| path.ended_in(goal)),
-            None => followed.and_then(|path| self.closed(path, arc, legs)),
-        };
+        let ended = followed.and_then(|path| match end {
+            PathEnd::Surface => self.closed(path, arc, legs),
+            PathEnd::Point(point) => Some(path.ended_at(point)),
+            PathEnd::Arc { ring, is_inside } => path.ended_next_to(ring, is_inside),
+        });
         let Some(path) = ended else {
             return false;
         };

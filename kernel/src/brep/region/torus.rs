@@ -1,6 +1,7 @@
 //! Paths between the loops of a torus: both circles through each loop, then paths to the first
 //! loop.
 
+use super::following::PathEnd;
 use super::{STARTS, Sorter};
 use crate::brep::surface_path::{DirectedArc, SurfacePath};
 use crate::brep::topology::Sense;
@@ -24,9 +25,9 @@ impl<N: Float> Sorter<'_, N> {
         let (mut tubes, mut rounds) = (false, false);
         for sense in [Sense::Along, Sense::Against] {
             let tube = SurfacePath::tube(&t, p, sense);
-            tubes |= self.follow(ring, arc, p, left, &[tube], None);
+            tubes |= self.follow(ring, arc, p, left, &[tube], PathEnd::Surface);
             if let Some(round) = SurfacePath::parallel(self.surface, p, sense, self.resolution) {
-                rounds |= self.follow(ring, arc, p, left, &[round], None);
+                rounds |= self.follow(ring, arc, p, left, &[round], PathEnd::Surface);
             }
         }
         // Every circle of the tube crosses a loop that winds around the axis, and every parallel
@@ -57,7 +58,7 @@ impl<N: Float> Sorter<'_, N> {
                 if let (true, Some(round)) = (
                     along,
                     SurfacePath::parallel(self.surface, &corner, sense, self.resolution),
-                ) && self.follow(ring, arc, p, left, &[leg, round], None)
+                ) && self.follow(ring, arc, p, left, &[leg, round], PathEnd::Surface)
                 {
                     return true;
                 }
@@ -68,7 +69,7 @@ impl<N: Float> Sorter<'_, N> {
                 let radius = t.frame.coordinates(p).xy().length();
                 let leg = round.upto(turn * radius);
                 let tube = SurfacePath::tube(t, &leg.point(turn * radius), sense);
-                if around && self.follow(ring, arc, p, left, &[leg, tube], None) {
+                if around && self.follow(ring, arc, p, left, &[leg, tube], PathEnd::Surface) {
                     return true;
                 }
             }
@@ -103,11 +104,13 @@ impl<N: Float> Sorter<'_, N> {
                     };
                     let from_left =
                         |leg: &SurfacePath<N>| leg.direction(&q.point).dot(&q.left).is_below_zero();
-                    let reached = match self.twin(goal) {
-                        Some(twin) if !legs.last().is_some_and(from_left) => twin,
-                        _ => goal,
+                    let is_left = legs.last().is_some_and(from_left);
+                    let twin = self.twin(goal).filter(|_| !is_left);
+                    let end = PathEnd::Arc {
+                        ring: self.owner[twin.unwrap_or(goal)],
+                        is_inside: is_left || twin.is_some(),
                     };
-                    if self.follow(ring, arc, p, left, &legs, Some(self.owner[reached])) {
+                    if self.follow(ring, arc, p, left, &legs, end) {
                         return true;
                     }
                 }
@@ -328,6 +331,41 @@ mod tests {
             let whole = Region {
                 loops: vec![0, 1, 2],
                 euler: -1,
+            };
+            assert_eq!(found, [whole]);
+        }
+    }
+
+    /// Two holes next to the outer parallel, with a sliver of 40 resolutions between them: a path that
+    /// ends 64 resolutions before the first one ends in the other.
+    #[test]
+    fn holes_with_a_sliver_between_them_are_of_one_face() {
+        const RESOLUTION: f64 = 1e-10;
+        let arc = |curve, range, sense| DirectedArc {
+            curve,
+            range,
+            sense,
+        };
+        let apart = 20.0 * RESOLUTION / torus().minor;
+        let angles = [[apart, 0.8], [-0.8, -apart]];
+        let parallels = angles.map(|pair| pair.map(parallel));
+        let tubes = [1.0, 2.0].map(tube);
+        let holes = [0, 1].map(|k| {
+            let ([low, high], [a, b]) = (&parallels[k], &tubes);
+            vec![
+                arc(low, [1.0, 2.0], Sense::Against),
+                arc(a, angles[k], Sense::Along),
+                arc(high, [1.0, 2.0], Sense::Along),
+                arc(b, angles[k], Sense::Against),
+            ]
+        });
+        let surface = Surface::Torus(torus());
+        for turn in 0..2 {
+            let loops: Vec<_> = (0..2).map(|k| holes[(turn + k) % 2].clone()).collect();
+            let found = regions(&surface, Sense::Along, &loops, RESOLUTION).unwrap();
+            let whole = Region {
+                loops: vec![0, 1],
+                euler: -2,
             };
             assert_eq!(found, [whole]);
         }

@@ -77,9 +77,10 @@ impl Edgewise {
         (0..PLACES).all(|k| self.carrier.distance(&curve.point(at(k))).is_within(near))
     }
 
-    /// The parameters at which another curve intersects the carrier.
-    pub fn passed_by(&self, curve: &Curve, range: [f64; 2], resolution: f64) -> Vec<f64> {
-        match cut(curve, range, &self.carrier, resolution) {
+    /// The parameters at which another curve intersects the carrier. Where it departs from the carrier
+    /// by no more than `near`, it only touches.
+    pub fn passed_by(&self, curve: &Curve, range: [f64; 2], near: f64) -> Vec<f64> {
+        match cut(curve, range, &self.carrier, near) {
             Roots::Everywhere => Vec::new(),
             Roots::At { roots, .. } => roots.iter().map(|r| r.t).collect(),
         }

@@ -524,10 +524,11 @@ fn edgewise(
     resolution: f64,
     found: &mut impl FnMut(f64, f64),
 ) -> Overlap {
-    if on.contains(b.curve, b.range, IMAGE_TOLERANCE * resolution) {
+    let near = IMAGE_TOLERANCE * resolution;
+    if on.contains(b.curve, b.range, near) {
         return Overlap::Yes;
     }
-    for s in on.passed_by(b.curve, b.range, resolution) {
+    for s in on.passed_by(b.curve, b.range, near) {
         let p = b.curve.point(s);
         on.parameters(a.curve, a.range, p, resolution, &mut |t| found(t, s));
     }

@@ -302,7 +302,8 @@ impl<'x> Graphs<'x> {
 
     /// Records the crossings, or that the two coincide in the image.
     fn cross(self, resolution: f64, common: &mut Common<'x>) {
-        if self.apart(resolution / self.scale) {
+        let near = IMAGE_TOLERANCE * resolution;
+        if self.apart(near / self.scale) {
             return;
         }
         let Some([lo, hi]) = self.common() else {
@@ -311,7 +312,7 @@ impl<'x> Graphs<'x> {
         if self.transversal() {
             return common.roots.extend(self.once([lo, hi], resolution));
         }
-        match isolate(&self, &[lo, hi], IMAGE_TOLERANCE * resolution) {
+        match isolate(&self, &[lo, hi], near) {
             Roots::Everywhere => common.shared.push(Shared::new(self, [lo, hi])),
             Roots::At { roots, .. } => {
                 let [a, b] = self.contour_arcs;

@@ -14,6 +14,7 @@ pub mod sheet;
 mod supports;
 pub mod svg;
 
+use image_arc::ImageEllipse;
 use image_arcs::ArcMaker;
 use nalgebra::{Point2, Vector2};
 use premio_visibility::camera::projection::{Projection, ViewRay};
@@ -236,9 +237,12 @@ impl StrokeShape {
                 from,
                 sweep,
             } => {
-                let minor = Vector2::new(-major.y, major.x) * *ratio;
-                let s = from + sweep * fraction;
-                centre + major * s.cos() + minor * s.sin()
+                let ellipse = ImageEllipse {
+                    centre: *centre,
+                    major: *major,
+                    ratio: *ratio,
+                };
+                ellipse.point(from + sweep * fraction)
             }
         }
     }

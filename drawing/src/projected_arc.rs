@@ -135,8 +135,7 @@ impl<'c> ProjectedArc<'c> {
         Nearest { t, distance }
     }
 
-    /// The nearest point between two parameters, by golden sections. The last bracket is taken for
-    /// straight: where the curve is fast it is longer than the distance.
+    /// The nearest point between two parameters, by golden sections.
     fn nearest_between(&self, mut lo: f64, mut hi: f64, p: &Point2<f64>) -> Nearest {
         let golden = 0.5 * (5.0f64.sqrt() - 1.0);
         let inner = |lo: f64, hi: f64| [hi - golden * (hi - lo), lo + golden * (hi - lo)];
@@ -154,23 +153,11 @@ impl<'c> ProjectedArc<'c> {
                 }
             }
         }
-        let foot = self.at(self.foot([lo, hi], p), p);
-        let all = [ends[0], tried[0], tried[1], foot, ends[1]];
+        let all = [ends[0], tried[0], tried[1], ends[1]];
         let nearest = all
             .into_iter()
             .min_by(|a, b| a.distance.total_cmp(&b.distance));
         nearest.unwrap_or(ends[0])
-    }
-
-    /// The parameter of the foot of a perpendicular on the chord between two parameters.
-    fn foot(&self, [lo, hi]: [f64; 2], p: &Point2<f64>) -> f64 {
-        let from = self.point(lo);
-        let chord = self.point(hi) - from;
-        let part = (p - from).dot(&chord) / chord.norm_squared();
-        match part.is_finite() {
-            true => lo + (hi - lo) * part.clamp(0.0, 1.0),
-            false => lo,
-        }
     }
 
     /// The arc over a part of its range.

@@ -3,6 +3,7 @@
 use premio_csg::builder::{Builder, SolidId};
 use premio_csg::evaluate::{Evaluation, EvaluationOptions, evaluate};
 use premio_csg::primitive::Primitive;
+use premio_csg::ray_casting::RayOracle;
 use premio_csg::reader::{Format, ReadOptions, read};
 use premio_csg::transform::{Transform, TransformStep};
 use premio_csg::tree::Tree;
@@ -59,5 +60,18 @@ pub fn tree(text: &str, format: Format) -> Tree {
 pub fn evaluated(tree: &Tree) -> Evaluation {
     let known = evaluate(tree, &EvaluationOptions::default()).unwrap();
     assert_eq!(known.violations(), []);
+    known
+}
+
+/// The boundary of a tree, which is valid, has a volume, and agrees with rays.
+#[track_caller]
+pub fn with_volume(tree: &Tree, volume: f64) -> Evaluation {
+    let known = evaluated(tree);
+    let found = known.mass().volume;
+    let off = (found - volume).abs();
+    assert!(off <= volume * 1e-11, "{found} and not {volume}");
+    let rays = RayOracle::new(tree).volume(4096, 1);
+    let deviation = rays.deviation(volume, 1e-9);
+    assert!(deviation < 6.0, "{rays:?} and not {volume}");
     known
 }

@@ -1,6 +1,6 @@
 //! Constructions against values derived by hand, and against rays.
 
-use crate::common::{block, evaluated, n, rotated, shifted, turned};
+use crate::common::{block, evaluated, n, rotated, shifted, turned, with_volume};
 use premio_csg::builder::{Builder, SolidId};
 use premio_csg::construction::{
     AffineMap, ConstructionError, ObliquePrism, convex_hull, mapped, minkowski_sum, section, shadow,
@@ -26,17 +26,7 @@ fn cylinder(builder: &mut Builder, radius: i32, height: i32, at: [i32; 3]) -> So
 #[track_caller]
 fn check(builder: &Builder, part: SolidId, volume: f64) -> Vec<&'static str> {
     let tree = builder.finish(part).unwrap();
-    let known = evaluated(&tree);
-    let found = known.mass().volume;
-    assert!(
-        (found - volume).abs() <= volume * 1e-11,
-        "{found} and not {volume}"
-    );
-    let rays = RayOracle::new(&tree).volume(4096, 1);
-    assert!(
-        rays.deviation(volume, 1e-9) < 6.0,
-        "{rays:?} and not {volume}"
-    );
+    let known = with_volume(&tree, volume);
     let faces = known.brep.topology.face_ids();
     let mut kinds: Vec<&str> = faces
         .map(|face| known.brep.surface(face).kind().name())

@@ -1,6 +1,6 @@
 //! Prisms and revolutions: evaluated boundaries against values derived by hand, and against rays.
 
-use crate::common::{evaluated, n, shifted, tree_of, turned};
+use crate::common::{evaluated, n, shifted, tree_of, turned, with_volume};
 use premio_csg::evaluate::{EvaluationOptions, evaluate};
 use premio_csg::figure::{ContourCorner, Figure, FigureArc, FigureError, FigurePoint, PlaneMap};
 use premio_csg::primitive::{Primitive, RevolutionAngle};
@@ -30,17 +30,7 @@ fn check(primitive: Primitive, volume: f64) -> [usize; 4] {
             let part = builder.primitive(primitive.clone());
             turned(builder, part, turn)
         });
-        let known = evaluated(&tree);
-        let found = known.mass().volume;
-        assert!(
-            (found - volume).abs() <= volume * 1e-11,
-            "{found} and not {volume}"
-        );
-        let rays = RayOracle::new(&tree).volume(4096, 1);
-        assert!(
-            rays.deviation(volume, 1e-9) < 6.0,
-            "{rays:?} and not {volume}"
-        );
+        let known = with_volume(&tree, volume);
         counts = known.brep.topology.census().cells;
     }
     counts

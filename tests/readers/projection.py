@@ -34,6 +34,7 @@ KNOWN = {
     "balls-2e-7-apart": FALSE,
     "coaxial-tori-overlapping": FALSE,
     "cone-apex-6e-10-from-a-ring": APEX,
+    "cone-apex-8e-9-inside-a-ball": FALSE,
     "cone-in-cylinder-rims-1e-7-apart": CLOSE,
     "cones-1e-9-apart": CLOSE,
     "cq-949b": FALSE,

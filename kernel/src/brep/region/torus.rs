@@ -336,38 +336,41 @@ mod tests {
         }
     }
 
-    /// Two holes next to the outer parallel, with a sliver of 40 resolutions between them: a path that
-    /// ends 64 resolutions before the first one ends in the other.
+    /// Two holes next to the outer parallel, with a sliver of 40 resolutions between them. The circles
+    /// through the start of the wide hole do not meet the other one, and the way to it ends 64
+    /// resolutions before it, in the wide hole.
     #[test]
     fn holes_with_a_sliver_between_them_are_of_one_face() {
         const RESOLUTION: f64 = 1e-10;
-        let arc = |curve, range, sense| DirectedArc {
-            curve,
-            range,
-            sense,
-        };
         let apart = 20.0 * RESOLUTION / torus().minor;
-        let angles = [[apart, 0.8], [-0.8, -apart]];
-        let parallels = angles.map(|pair| pair.map(parallel));
-        let tubes = [1.0, 2.0].map(tube);
-        let holes = [0, 1].map(|k| {
-            let ([low, high], [a, b]) = (&parallels[k], &tubes);
+        let holes = [([apart, 0.8], [4.3, 4.7]), ([-0.8, -apart], [1.0, 5.0])];
+        let circles = holes.map(|(angles, turns)| (turns.map(tube), angles.map(parallel)));
+        let [narrow, wide] = [0, 1].map(|k| {
+            let ((angles, turns), (tubes, parallels)) = (holes[k], &circles[k]);
+            let arc = |curve, range, sense| DirectedArc {
+                curve,
+                range,
+                sense,
+            };
             vec![
-                arc(low, [1.0, 2.0], Sense::Against),
-                arc(a, angles[k], Sense::Along),
-                arc(high, [1.0, 2.0], Sense::Along),
-                arc(b, angles[k], Sense::Against),
+                arc(&tubes[0], angles, Sense::Along),
+                arc(&parallels[1], turns, Sense::Along),
+                arc(&tubes[1], angles, Sense::Against),
+                arc(&parallels[0], turns, Sense::Against),
             ]
         });
         let surface = Surface::Torus(torus());
-        for turn in 0..2 {
-            let loops: Vec<_> = (0..2).map(|k| holes[(turn + k) % 2].clone()).collect();
-            let found = regions(&surface, Sense::Along, &loops, RESOLUTION).unwrap();
-            let whole = Region {
-                loops: vec![0, 1],
-                euler: -2,
-            };
-            assert_eq!(found, [whole]);
+        for turn in 0..4 {
+            let mut first = narrow.clone();
+            first.rotate_left(turn);
+            for loops in [[first.clone(), wide.clone()], [wide.clone(), first]] {
+                let found = regions(&surface, Sense::Along, &loops, RESOLUTION).unwrap();
+                let whole = Region {
+                    loops: vec![0, 1],
+                    euler: -2,
+                };
+                assert_eq!(found, [whole]);
+            }
         }
     }
 }

@@ -137,33 +137,41 @@ fn cone(base: &Rational, top: &Rational, height: &Rational) -> Coefficients<Rati
 mod tests {
     use super::super::halfspaces::HalfSpaceModel;
     use super::*;
-    use crate::reader::{Format, ReadOptions, read};
+    use crate::builder::Builder;
+    use crate::primitive::Primitive;
+    use crate::transform::{Transform, TransformStep};
     use crate::tree::TreeNode;
     use nalgebra::Vector3;
     use premio_kernel::geometry::surface::Surface;
-    use premio_kernel::number::rational::to_f64;
+    use premio_kernel::number::rational::{Rational, to_f64};
 
     #[test]
     fn exact_and_rounded_half_spaces_are_the_same() {
+        let n = |x: i32| Rational::from(x);
         let parts = [
-            "BLO(X=4,Y=3,Z=2)",
-            "WED(X=4,Y=3,Z=2)",
-            "CYL(R=2,H=3)",
-            "CON(R=2,H=3)",
-            "CON(R=1,R2=2,H=3)",
-            "CON(R=2,R2=1,H=3)",
-            "SPH(R=2)",
-            "TOR(RMAJ=3,RMIN=1)",
+            Primitive::block([4, 3, 2].map(n)),
+            Primitive::wedge([4, 3, 2].map(n)),
+            Primitive::cylinder(n(2), n(3)),
+            Primitive::frustum(n(2), n(0), n(3)),
+            Primitive::frustum(n(1), n(2), n(3)),
+            Primitive::frustum(n(2), n(1), n(3)),
+            Primitive::sphere(n(2)),
+            Primitive::torus(n(3), n(1)),
         ];
-        for part in parts {
-            let text = format!("P = {part} AT (ROTX=17,ROTZ=31,MOVX=0.1,MOVY=7)");
-            let tree = read(
-                "part",
-                text.as_bytes(),
-                Format::Padl,
-                &ReadOptions::default(),
-            );
-            let tree = tree.unwrap().tree;
+        for part in parts.map(Result::unwrap) {
+            let name = format!("{part:?}");
+            let mut moves = Transform::new();
+            for step in [
+                TransformStep::about(0, n(17)),
+                TransformStep::about(2, n(31)),
+                TransformStep::Shift([n(1) / n(10), n(7), n(0)]),
+            ] {
+                moves.push(step).unwrap();
+            }
+            let mut builder = Builder::new();
+            let part = builder.primitive(part);
+            let part = builder.moved(part, moves);
+            let tree = builder.finish(part).unwrap();
             let solids = HalfSpaceModel::new(&tree);
             for (k, side) in solids.all[0].sides.iter().enumerate() {
                 let TreeNode::Leaf(placed) = &tree[solids.all[0].leaf] else {
@@ -183,14 +191,14 @@ mod tests {
                 };
                 let slack = 4.0 * f64::EPSILON;
                 let direction = Vector3::from(exact.direction).normalize();
-                assert!((direction - frame.z).norm() <= slack, "{part} side {k}");
+                assert!((direction - frame.z).norm() <= slack, "{name} side {k}");
                 assert_eq!(
                     exact.point,
                     <[f64; 3]>::from(frame.origin),
-                    "{part} side {k}"
+                    "{name} side {k}"
                 );
                 for (a, b) in [exact.size, exact.tube].iter().zip(sizes) {
-                    assert!((a - b).abs() <= slack * b, "{part} side {k}");
+                    assert!((a - b).abs() <= slack * b, "{name} side {k}");
                 }
             }
         }

@@ -5,17 +5,21 @@
 //! solid. At a point inside a face, away from all intersections, the tree must have material just
 //! below and none just above.
 
-use super::halfspaces::EndRule;
+use super::carrier_intersections::arrange;
+use super::halfspaces::{EndRule, HalfSpaceModel};
+use super::membership::Membership;
 use super::relevance::CloseCallFilter;
-use crate::tree::NodeId;
+use super::{Evaluation, EvaluationError, MAX_ENTITIES};
+use crate::tree::{NodeId, Tree};
 use nalgebra::{Point3, Vector3};
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::locate::FaceLocator;
 use premio_kernel::brep::topology::FaceId;
+use premio_kernel::geometry::region_of_interest::RegionOfInterest;
 use premio_kernel::geometry::surface::Surface;
 use premio_kernel::geometry::vector::rounded;
 use premio_kernel::number::float::Float;
-use premio_kernel::number::predicates::Compare;
+use premio_kernel::number::predicates::{Compare, Predicates};
 
 /// The distance above and below a face at which the tree is evaluated, in multiples of the
 /// resolution.
@@ -38,6 +42,33 @@ enum Adjacency {
     Clear([bool; 2]),
     /// It intersects the face there, or nearly coincides with it.
     Unclear,
+}
+
+impl Evaluation {
+    /// A point of a face of the boundary where a tree has no boundary, or has its material on the
+    /// other side; `None` if the tree contradicts no face.
+    ///
+    /// A tree that contradicts no face may have more faces. Nothing is concluded of a whole sphere or
+    /// torus, nor of a face all over which another surface is within the resolution.
+    ///
+    /// # Errors
+    /// As [`evaluate`](super::evaluate), where f64 does not determine how the surfaces intersect.
+    pub fn contradiction(&self, tree: &Tree) -> Result<Option<[f64; 3]>, EvaluationError> {
+        let solids = HalfSpaceModel::<f64>::new(tree);
+        let predicates = Predicates::new(self.resolution);
+        let extent = RegionOfInterest {
+            centre: self.bounds.centre(),
+            radius: self.bounds.diagonal(),
+        };
+        let arranged = arrange(tree, &solids, &extent, &predicates, MAX_ENTITIES)?;
+        let concern = CloseCallFilter {
+            solids: &solids,
+            arrangement: &arranged.arrangement,
+            membership: &Membership::new(tree),
+            predicates: &predicates,
+        };
+        Ok(concern.contradiction(&self.brep))
+    }
 }
 
 impl<N: Float> CloseCallFilter<'_, N> {
@@ -142,74 +173,6 @@ impl<N: Float> CloseCallFilter<'_, N> {
         match is_near || (holds[0] != holds[1] && !is_own) {
             true => Adjacency::Unclear,
             false => Adjacency::Clear(holds),
-        }
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by it")]
-mod tests {
-    use super::super::carrier_intersections::arrange;
-    use super::super::halfspaces::HalfSpaceModel;
-    use super::super::membership::Membership;
-    use super::super::settings::Settings;
-    use super::super::{EvaluationOptions, MAX_ENTITIES, evaluated};
-    use super::*;
-    use crate::reader::{Format, ReadOptions, read};
-    use crate::tree::Tree;
-    use premio_kernel::geometry::region_of_interest::RegionOfInterest;
-    use premio_kernel::number::predicates::Predicates;
-
-    const PARTS: [[&str; 2]; 4] = [
-        ["BLO(X=2, Y=2, Z=2)", "CYL(R=0.5, H=3) AT (MOVX=1, MOVY=1)"],
-        ["TOR(RMAJ=2, RMIN=0.5)", "BLO(X=3, Y=3, Z=3)"],
-        ["CON(R=1, H=2)", "SPH(R=0.7) AT (MOVZ=0.5, MOVX=0.3)"],
-        ["SPH(R=1)", "WED(X=1, Y=1, Z=1)"],
-    ];
-
-    const OPERATIONS: [&str; 3] = ["UN", "INT", "DIF"];
-
-    fn tree([a, b]: [&str; 2], op: &str) -> Tree {
-        let text = format!("PART = {a} {op} {b}\n");
-        let read = read(
-            "part",
-            text.as_bytes(),
-            Format::Padl,
-            &ReadOptions::default(),
-        );
-        read.unwrap().tree
-    }
-
-    /// Whether a boundary is contradicted by the tree of the same primitives otherwise joined.
-    fn is_contradicted(tree: &Tree, joined: &Tree) -> bool {
-        let solids = HalfSpaceModel::<f64>::new(tree);
-        let size = solids.bounds.diagonal();
-        let settings = Settings::new(&EvaluationOptions::default(), size);
-        let known = evaluated::<f64>(tree, &settings).unwrap();
-        let predicates = Predicates::new(known.resolution);
-        let extent = RegionOfInterest {
-            centre: solids.bounds.centre(),
-            radius: 0.75 * size,
-        };
-        let arranged = arrange(tree, &solids, &extent, &predicates, MAX_ENTITIES);
-        let concern = CloseCallFilter {
-            solids: &solids,
-            arrangement: &arranged.unwrap().arrangement,
-            membership: &Membership::new(joined),
-            predicates: &predicates,
-        };
-        concern.contradiction(&known.brep).is_some()
-    }
-
-    #[test]
-    fn the_boundary_of_another_solid_is_contradicted() {
-        for part in PARTS {
-            for op in OPERATIONS {
-                for other in OPERATIONS {
-                    let is_found = is_contradicted(&tree(part, op), &tree(part, other));
-                    assert_eq!(is_found, op != other, "{part:?}: {op} for {other}");
-                }
-            }
         }
     }
 }

@@ -72,20 +72,36 @@ impl<'a> RoundedFacets<'a> {
 #[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
     use super::*;
-    use crate::reader::{Format, ReadOptions, read};
+    use crate::builder::Builder;
+    use crate::polyhedron::SpacePoint;
+    use premio_kernel::number::rational::{Rational, from_f64};
+    use std::sync::Arc;
+
+    const FACES: [&[usize]; 9] = [
+        &[0, 1, 2, 3],
+        &[4, 5, 1, 0],
+        &[5, 6, 2, 1],
+        &[6, 7, 3, 2],
+        &[7, 4, 0, 3],
+        &[4, 8, 5],
+        &[5, 8, 6],
+        &[6, 8, 7],
+        &[7, 8, 4],
+    ];
 
     /// A roof of 1 by 1 on a block, of the given height.
     fn roof(height: f64) -> Tree {
-        let text = format!(
-            "polyhedron(points = [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],
-            [0.5,0.5,{}]], faces = [[0,1,2,3],[4,5,1,0],[5,6,2,1],[6,7,3,2],[7,4,0,3],[4,8,5],[5,8,6],
-            [6,8,7],[7,8,4]]);",
-            1.0 + height
-        );
-        let options = ReadOptions::default();
-        read("roof", text.as_bytes(), Format::Csg, &options)
-            .unwrap()
-            .tree
+        let corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|p| p.map(Rational::from));
+        let level = |z: Rational| corners.clone().map(|[x, y]| [x, y, z.clone()]);
+        let half = Rational::from(1) / Rational::from(2);
+        let peak = [half.clone(), half, from_f64(1.0 + height).unwrap()];
+        let points = [0, 1].into_iter().flat_map(|z| level(Rational::from(z)));
+        let faces = FACES.map(|corners| PolyhedronFace::simple(corners.to_vec()));
+        let points: Vec<SpacePoint> = points.chain([peak]).collect();
+        let polyhedron = Arc::new(Polyhedron::from_faces(&points, &faces).unwrap().polyhedron);
+        let mut builder = Builder::new();
+        let part = builder.primitive(Primitive::Polyhedron { polyhedron });
+        builder.finish(part).unwrap()
     }
 
     #[test]

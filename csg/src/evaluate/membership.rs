@@ -316,7 +316,9 @@ impl<'a> Membership<'a> {
 #[allow(clippy::unwrap_used, reason = "a test fails by it")]
 mod tests {
     use super::*;
-    use crate::reader::{Format, ReadOptions, read};
+    use crate::builder::{Builder, SolidId};
+    use crate::primitive::Primitive;
+    use premio_kernel::number::rational::Rational;
 
     /// The deciding primitives among the open ones of a part, by their positions in the text.
     fn deciding(part: &str, held: &[usize], open: &[usize]) -> Vec<usize> {
@@ -375,12 +377,34 @@ mod tests {
         "((A INT A) UN A) INT A",
     ];
 
+    /// The tree of an expression on spheres, from left to right.
     fn tree(part: &str) -> Tree {
-        let text = format!("A = SPH(R=1)\nP = {part}\n");
-        let options = ReadOptions::default();
-        read("part", text.as_bytes(), Format::Padl, &options)
-            .unwrap()
-            .tree
+        let spaced = part.replace('(', "( ").replace(')', " )");
+        let mut builder = Builder::new();
+        let part = expression(&mut spaced.split_whitespace(), &mut builder);
+        builder.finish(part).unwrap()
+    }
+
+    fn expression<'t>(words: &mut impl Iterator<Item = &'t str>, builder: &mut Builder) -> SolidId {
+        let mut known = operand(words, builder);
+        while let Some(op) = words.next() {
+            let op = match op {
+                "UN" => Operation::Union,
+                "INT" => Operation::Intersection,
+                "DIF" => Operation::Difference,
+                _ => return known,
+            };
+            let other = operand(words, builder);
+            known = builder.operation(op, &[known, other]);
+        }
+        known
+    }
+
+    fn operand<'t>(words: &mut impl Iterator<Item = &'t str>, builder: &mut Builder) -> SolidId {
+        match words.next() {
+            Some("A") => builder.primitive(Primitive::sphere(Rational::from(1)).unwrap()),
+            _ => expression(words, builder),
+        }
     }
 
     /// Every set of leaves that may contain a point, every one of them, and both answers for it.

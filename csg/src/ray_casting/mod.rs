@@ -360,6 +360,3 @@ impl EmptyBox for AABB<[f64; 3]> {
         *self == AABB::new_empty()
     }
 }
-
-#[cfg(test)]
-mod tests;

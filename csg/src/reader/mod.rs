@@ -19,8 +19,6 @@ mod rigid_fit;
 mod scad;
 mod spanned;
 mod sweep;
-#[cfg(test)]
-mod tests;
 
 use std::ops::Range;
 use std::path::Path;

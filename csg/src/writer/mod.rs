@@ -8,8 +8,6 @@ mod json;
 mod number;
 mod padl;
 mod scad;
-#[cfg(test)]
-mod tests;
 mod turns;
 
 use premio_kernel::number::rational::Rational;

@@ -1,55 +1,94 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use super::HalfSpaceModel;
-use crate::reader::{Format, ReadOptions, read};
+use crate::builder::Builder;
+use crate::figure::Figure;
+use crate::polyhedron::{Polyhedron, PolyhedronFace};
+use crate::primitive::{Primitive, RevolutionAngle};
+use crate::transform::{Transform, TransformStep};
 use nalgebra::{Point3, Vector3};
+use premio_kernel::number::rational::Rational;
 use proptest::prelude::*;
+use std::sync::Arc;
 
-/// Primitives of every kind, moved: walls that are slanted, surfaces with an apex, sections of less and
-/// of more than half a turn.
-const SOLIDS: &[(&str, Format)] = &[
-    ("P = BLO(X=2, Y=3, Z=4) AT (ROTZ=30)", Format::Padl),
-    ("P = WED(X=2, Y=3, Z=1) AT (ROTX=20)", Format::Padl),
-    ("P = CYL(R=1, H=3) AT (ROTY=40)", Format::Padl),
-    ("P = CON(R=2, H=1, R2=0.5) AT (MOVX=1)", Format::Padl),
-    ("P = CON(R=0.2, H=3) AT (ROTX=50)", Format::Padl),
-    ("P = SPH(R=2)", Format::Padl),
-    ("P = TOR(RMAJ=2, RMIN=0.5) AT (ROTX=30)", Format::Padl),
-    ("P = TOR(RMAJ=1, RMIN=2)", Format::Padl),
-    ("cube(size = [1, 2, 3], center = true);", Format::Csg),
-    (
-        "multmatrix([[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0], [0, 0, 0, 1]]) sphere($fn = 0, r = 2);",
-        Format::Csg,
-    ),
-    (
-        "multmatrix([[3, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) cylinder($fn = 0, h = 2, r1 = 1, r2 = 0.2);",
-        Format::Csg,
-    ),
-    (
-        "linear_extrude(height = 1, scale = 0.1) square(size = [8, 6], center = true);",
-        Format::Csg,
-    ),
-    (
-        "linear_extrude(height = 1, scale = 0) square(size = [8, 6], center = true);",
-        Format::Csg,
-    ),
-    (
-        "linear_extrude(height = 1, scale = 6) { circle($fn = 0, r = 1); multmatrix([[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) square(size = [2, 1]); }",
-        Format::Csg,
-    ),
-    (
-        "rotate_extrude(angle = 100, $fn = 0) { multmatrix([[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) square(size = [2, 1]); }",
-        Format::Csg,
-    ),
-    (
-        "rotate_extrude(angle = 260, $fn = 0) { multmatrix([[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) square(size = [2, 1]); }",
-        Format::Csg,
-    ),
-    (
-        "polyhedron(points = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 1]], faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]);",
-        Format::Csg,
-    ),
-];
+fn n(x: i32) -> Rational {
+    Rational::from(x)
+}
+
+fn tenths(x: i32) -> Rational {
+    n(x) / n(10)
+}
+
+fn polygon(corners: &[[i32; 2]]) -> Figure {
+    let corners = corners.iter().map(|corner| corner.map(n)).collect();
+    Figure::polygon(&[corners]).unwrap()
+}
+
+fn revolved(degrees: i32) -> Primitive {
+    let section = polygon(&[[1, 0], [3, 0], [3, 1], [1, 1]]);
+    let angle = RevolutionAngle::new(n(degrees)).unwrap();
+    Primitive::revolution(section, Some(angle)).unwrap()
+}
+
+fn tetrahedron() -> Primitive {
+    let points = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 1]].map(|p| p.map(n));
+    let faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+    let faces = faces.map(|corners| PolyhedronFace::simple(corners.to_vec()));
+    let polyhedron = Arc::new(Polyhedron::from_faces(&points, &faces).unwrap().polyhedron);
+    Primitive::Polyhedron { polyhedron }
+}
+
+/// Primitives of every kind: walls that are slanted, surfaces with an apex, sections of less and of
+/// more than half a turn.
+fn primitives() -> Vec<Primitive> {
+    let plate = || polygon(&[[-4, -3], [4, -3], [4, 3], [-4, 3]]);
+    let axes = |a: i32, b: Rational, c: Rational| {
+        let o = || n(0);
+        [[n(a), o(), o()], [o(), b, o()], [o(), o(), c]]
+    };
+    let all = [
+        Primitive::block([2, 3, 4].map(n)),
+        Primitive::wedge([2, 3, 1].map(n)),
+        Primitive::cylinder(n(1), n(3)),
+        Primitive::frustum(n(2), tenths(5), n(1)),
+        Primitive::frustum(tenths(2), n(0), n(3)),
+        Primitive::sphere(n(2)),
+        Primitive::torus(n(2), tenths(5)),
+        Primitive::torus(n(1), n(2)),
+        Primitive::ellipsoid(axes(4, n(2), n(1))),
+        Primitive::oblique_frustum(axes(3, n(1), n(2)), tenths(2)),
+        Primitive::scaled_prism(plate(), n(1), tenths(1)),
+        Primitive::scaled_prism(plate(), n(1), n(0)),
+        Primitive::scaled_prism(Figure::disc(&n(1)).unwrap(), n(1), n(6)),
+        Ok(revolved(100)),
+        Ok(revolved(260)),
+        Ok(tetrahedron()),
+    ];
+    all.into_iter().map(Result::unwrap).collect()
+}
+
+/// Each primitive in its own position, and rotated.
+fn models() -> Vec<(String, HalfSpaceModel<f64>)> {
+    let turned = |primitive: &Primitive, degrees: i32| {
+        let mut moves = Transform::new();
+        let axis = [1, 2, 2].map(n);
+        let degrees = n(degrees);
+        moves.push(TransformStep::Turn { axis, degrees }).unwrap();
+        let mut builder = Builder::new();
+        let part = builder.primitive(primitive.clone());
+        let part = builder.moved(part, moves);
+        HalfSpaceModel::new(&builder.finish(part).unwrap())
+    };
+    let named = |primitive: &Primitive| {
+        [0, 40].map(|degrees| {
+            (
+                format!("{primitive:?} by {degrees}"),
+                turned(primitive, degrees),
+            )
+        })
+    };
+    primitives().iter().flat_map(named).collect()
+}
 
 fn coordinate() -> impl Strategy<Value = f64> {
     -5.0..5.0
@@ -67,10 +106,7 @@ proptest! {
         part in 0.5..1.0,
     ) {
         let p = Point3::from(p);
-        for (text, format) in SOLIDS {
-            let options = ReadOptions::default();
-            let tree = read("part", text.as_bytes(), *format, &options).unwrap().tree;
-            let model = HalfSpaceModel::<f64>::new(&tree);
+        for (text, model) in models() {
             for solid in &model.all {
                 for limit in [0.5, 100.0] {
                     let level = solid.level(&p, limit);

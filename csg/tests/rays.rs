@@ -1,18 +1,15 @@
-use super::*;
-use crate::builder::Builder;
-use crate::reader::{Format, ReadOptions, read};
+//! Rays through solids, against intervals and volumes by hand.
+
+use crate::common::tree;
+use nalgebra::{Point3, Vector3};
+use premio_csg::builder::Builder;
+use premio_csg::ray_casting::*;
+use premio_csg::reader::Format;
 use premio_kernel::geometry::bounds::Aabb;
 use std::f64::consts::PI;
 
 fn material(padl: &str) -> RayOracle {
-    let read = read(
-        "test",
-        padl.as_bytes(),
-        Format::Padl,
-        &ReadOptions::default(),
-    )
-    .unwrap();
-    RayOracle::new(&read.tree)
+    RayOracle::new(&tree(padl, Format::Padl))
 }
 
 fn ray(origin: [f64; 3], direction: [f64; 3]) -> Ray {
@@ -93,7 +90,7 @@ fn nothing_is_nothing() {
     let empty = material("P = SPH(R=1) INT SPH(R=1) AT (MOVX=3)");
     assert_eq!(empty.volume(1000, 1), Estimate::default());
     let builder = Builder::new();
-    let none = RayOracle::new(&builder.finish(crate::builder::SolidId::EMPTY).unwrap());
+    let none = RayOracle::new(&builder.finish(premio_csg::builder::SolidId::EMPTY).unwrap());
     assert_eq!(none.volume(1000, 1), Estimate::default());
     assert!(!none.contains(&Point3::origin()));
     assert!(

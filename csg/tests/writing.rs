@@ -1,9 +1,13 @@
 //! Tests of the writers: written text is read as the same tree.
 
-use super::*;
-use crate::reader::{Program, ReadOptions, parse, read};
-use crate::tree::Tree;
 use insta::assert_snapshot;
+use premio_csg::builder::Builder;
+use premio_csg::primitive::Primitive;
+use premio_csg::reader::{Format, Program, ReadOptions, parse, read};
+use premio_csg::transform::{Transform, TransformStep};
+use premio_csg::tree::{Operation, Tree};
+use premio_csg::writer::write;
+use premio_kernel::number::rational::{Rational, whole};
 
 fn parsed(text: &str, format: Format) -> Program {
     parse("part", text.as_bytes(), format, &ReadOptions::default()).unwrap()
@@ -154,7 +158,14 @@ fn languages() {
 fn mirrors_and_scales_are_written_at_the_primitives() {
     let mut b = Builder::new();
     let block = Primitive::block([2, 3, 4].map(Rational::from)).unwrap();
-    let mut moves = crate::transform::Transform::shift([1, 10, 1].map(Rational::from));
+    let shift = |by: [i32; 3]| {
+        let mut moves = Transform::new();
+        moves
+            .push(TransformStep::Shift(by.map(Rational::from)))
+            .unwrap();
+        moves
+    };
+    let mut moves = shift([1, 10, 1]);
     let turn = TransformStep::Turn {
         axis: [1, 0, 0].map(Rational::from),
         degrees: 30.into(),
@@ -164,10 +175,7 @@ fn mirrors_and_scales_are_written_at_the_primitives() {
     let part = b.moved(part, moves);
     let part = b.scaled(part, Rational::from(2));
     let part = b.mirrored_y(part);
-    let part = b.moved(
-        part,
-        crate::transform::Transform::shift([0, 0, 7].map(Rational::from)),
-    );
+    let part = b.moved(part, shift([0, 0, 7]));
     let both = b.operation(Operation::Union, &[part, part]);
     let expected = b.finish(both).unwrap();
     for format in [Format::Padl, Format::Csg, Format::Json] {
@@ -194,26 +202,18 @@ fn any_turn_is_held_by_json() {
 #[test]
 fn turns_beyond_a_right_angle_are_found_again() {
     let padl = "PART = BLO(X=1, Y=2, Z=3) AT (ROTX=93.21, ROTY=184.059, ROTZ=145.776)";
+    let json = with_quaternion(padl);
     let known = tree(padl, Format::Padl);
-    let (_, placed) = known.leaves().next().unwrap();
-    let step = TransformStep::Quaternion(placed.motion.quaternion());
-    assert_eq!(turns::about_axes(&step).len(), 3);
-    let mut moves = Transform::new();
-    for turn in turns::about_axes(&step) {
-        moves
-            .push(TransformStep::about(turn.axis, turn.degrees))
-            .unwrap();
-    }
-    assert!(*moves.motion() == placed.motion);
+    assert!(tree(&json, Format::Json) == known);
+    let written = written(&json, Format::Json, Format::Padl);
+    assert_eq!(written.matches("ROT").count(), 3, "{written}");
+    assert!(tree(&written, Format::Padl) == known, "{written}");
 }
 
 #[test]
 fn turns_by_decimals_about_three_axes_are_found_again() {
     let text = "P = BLO(X=1, Y=2, Z=3) AT (ROTX=12.5, ROTY=-3.75, ROTZ=100.125)";
-    let [w, x, y, z] = quaternion(text);
-    let json = format!(
-        r#"{{"prim":"block","size":[1,2,3],"transform":[{{"quaternion":[{w},{x},{y},{z}]}}]}}"#
-    );
+    let json = with_quaternion(text);
     assert!(tree(&json, Format::Json) == tree(text, Format::Padl));
     let padl = written(&json, Format::Json, Format::Padl);
     assert!(
@@ -222,60 +222,14 @@ fn turns_by_decimals_about_three_axes_are_found_again() {
     );
 }
 
-/// The quaternion of the rotation of a text's only primitive, in integers.
-fn quaternion(text: &str) -> [Rational; 4] {
-    let matrix = tree(text, Format::Padl)
-        .leaves()
-        .next()
-        .unwrap()
-        .1
-        .motion
-        .rotation_matrix();
+/// The block of 1 by 2 by 3 of a text, with its rotation as a quaternion of integers.
+fn with_quaternion(text: &str) -> String {
+    let tree = tree(text, Format::Padl);
+    let (_, placed) = tree.leaves().next().unwrap();
+    let matrix = placed.motion.rotation_matrix();
     let m = |i: usize, j: usize| matrix[i][j].clone();
     let w = Rational::ONE + m(0, 0) + m(1, 1) + m(2, 2);
     let all = [w, m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)];
-    premio_kernel::number::rational::whole(&all)
-}
-
-#[test]
-fn the_empty_solid() {
-    let empty = r#"{"op":"union","children":[]}"#;
-    for format in [Format::Json, Format::Csg] {
-        assert!(tree(&written(empty, Format::Json, format), format).is_empty());
-    }
-    let source = parsed(empty, Format::Json);
-    let refused = write(&source.builder, source.part, Format::Padl);
-    assert_eq!(refused, Err(WriteError::Empty));
-    let refused = write(&source.builder, source.part, Format::Pov);
-    assert_eq!(refused, Err(WriteError::ReadOnly));
-}
-
-#[test]
-fn deep_parts_need_no_stack() {
-    const LEVELS: usize = 50_000;
-    let text = format!(
-        "A = {}SPH(R=1){}",
-        "(".repeat(LEVELS),
-        " AT (MOVX=1) DIF SPH(R=2) UN SPH(R=3))".repeat(LEVELS)
-    );
-    for format in [Format::Padl, Format::Csg, Format::Json] {
-        let other = written(&text, Format::Padl, format);
-        assert!(tree(&other, format) == tree(&text, Format::Padl));
-    }
-}
-
-#[test]
-fn many_copies_are_refused() {
-    let mut text = "A0 = SPH(R=1)\n".to_owned();
-    for level in 1..40 {
-        text += &format!("A{level} = A{0} UN A{0} AT (MOVX={level})\n", level - 1);
-    }
-    let source = parsed(&text, Format::Padl);
-    let refused = write(&source.builder, source.part, Format::Json);
-    assert!(matches!(refused, Err(WriteError::TooManyLeaves { .. })));
-}
-
-#[test]
-fn json_holds_tori_that_cross_their_axis() {
-    assert_same("P = TOR(RMAJ=3, RMIN=5)", Format::Padl, Format::Json);
+    let [w, x, y, z] = whole(&all);
+    format!(r#"{{"prim":"block","size":[1,2,3],"transform":[{{"quaternion":[{w},{x},{y},{z}]}}]}}"#)
 }

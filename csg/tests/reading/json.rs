@@ -84,7 +84,7 @@ fn figures_are_read_and_written() {
             &ReadOptions::default(),
         );
         let program = program.unwrap();
-        let written = crate::writer::write(&program.builder, program.part, Format::Json);
+        let written = premio_csg::writer::write(&program.builder, program.part, Format::Json);
         assert_eq!(written.unwrap().trim(), text);
     }
     for (text, expected) in [

@@ -11,11 +11,13 @@ mod padl_words;
 mod pov;
 mod robustness;
 
-use super::*;
-use crate::polyhedron::Polyhedron;
-use crate::primitive::Primitive;
-use crate::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
 use nalgebra::Vector3;
+use premio_csg::figure::Figure;
+use premio_csg::polyhedron::Polyhedron;
+use premio_csg::primitive::Primitive;
+use premio_csg::reader::*;
+use premio_csg::tree::Tree;
+use premio_csg::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
 use premio_kernel::number::rational::{Rational, to_f64};
 
 fn read_text(text: &str, format: Format) -> Result<Description, ReadError> {
@@ -101,25 +103,25 @@ fn is_enclosed(polyhedron: &Polyhedron, p: [f64; 3]) -> bool {
 
 /// Whether a tree contains a point, by classifying it with every primitive.
 fn inside(tree: &Tree, point: [f64; 3]) -> bool {
-    let mut held = vec![false; tree.nodes().len()];
-    for (index, node) in tree.nodes().iter().enumerate().rev() {
-        held[index] = match node {
-            TreeNode::Leaf(PlacedPrimitive { primitive, motion }) => {
-                let back = motion.inverse();
-                let exact = point.map(|x| premio_kernel::number::rational::from_f64(x).unwrap());
-                contains(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
+    tree.root().is_some_and(|root| holds(tree, root, point))
+}
+
+fn holds(tree: &Tree, node: NodeId, point: [f64; 3]) -> bool {
+    match &tree[node] {
+        TreeNode::Leaf(PlacedPrimitive { primitive, motion }) => {
+            let back = motion.inverse();
+            let exact = point.map(|x| premio_kernel::number::rational::from_f64(x).unwrap());
+            contains(primitive, back.apply_point(&exact).map(|x| to_f64(&x)))
+        }
+        TreeNode::Operation { op, children } => {
+            let mut below = children.iter().map(|child| holds(tree, *child, point));
+            match op {
+                Operation::Union => below.any(|h| h),
+                Operation::Intersection => below.all(|h| h),
+                Operation::Difference => below.next().unwrap() && !below.any(|h| h),
             }
-            TreeNode::Operation { op, children } => {
-                let mut below = children.iter().map(|child: &NodeId| held[child.index()]);
-                match op {
-                    Operation::Union => below.any(|h| h),
-                    Operation::Intersection => below.all(|h| h),
-                    Operation::Difference => below.next().unwrap() && !below.any(|h| h),
-                }
-            }
-        };
+        }
     }
-    held.first().copied().unwrap_or(false)
 }
 
 /// Asserts that two trees contain the same points of a grid that avoids round numbers.
@@ -136,7 +138,7 @@ fn assert_same_points(a: &Tree, b: impl Fn([f64; 3]) -> bool) {
 
 /// Whether the outline of a figure turns around a point, by the sum of its angles. Arcs are taken as
 /// many chords.
-fn is_around(figure: &crate::figure::Figure, [x, y]: [f64; 2]) -> bool {
+fn is_around(figure: &Figure, [x, y]: [f64; 2]) -> bool {
     const CHORDS: u32 = 256;
     let angle = |s: [f64; 2], e: [f64; 2]| {
         let [s, e] = [s, e].map(|p| [p[0] - x, p[1] - y]);

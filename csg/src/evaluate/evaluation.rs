@@ -2,7 +2,7 @@
 
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::bounding_box::bounds;
-use premio_kernel::brep::check::{Violation, check, check_integrals};
+use premio_kernel::brep::check::{Violation, check, check_integrals, worst_gap};
 use premio_kernel::brep::face_integrals::{FaceIntegrals, Mass};
 use premio_kernel::geometry::bounds::Aabb;
 use premio_kernel::number::double_double::F106;
@@ -28,6 +28,9 @@ pub struct Evaluation {
     integrals: Integrals,
     /// The resolution at which f64 gives the same boundary, if it does.
     pub(super) view_resolution: Option<f64>,
+    /// The greatest distance of an edge from a face or a vertex, if the rounding to f64 makes it larger
+    /// than merging does.
+    rounding_gap: f64,
     /// Computed on the first request: in extended precision it takes longer than the boundary.
     mass: OnceLock<Mass>,
 }
@@ -69,6 +72,7 @@ impl Evaluation {
     /// has to be confirmed.
     pub fn rounded_view_resolution(&self) -> f64 {
         self.resolution
+            .max(self.rounding_gap)
             .max(RELATIVE_RESOLUTION * self.bounds.diagonal())
     }
 
@@ -96,7 +100,9 @@ impl Evaluation {
     /// The resolution that f64 supports for the boundary, however finely it was evaluated.
     pub fn f64_resolution(&self) -> f64 {
         let known = self.view_resolution.unwrap_or(self.resolution);
-        known.max(ROUNDING * self.bounds.diagonal())
+        known
+            .max(self.rounding_gap)
+            .max(ROUNDING * self.bounds.diagonal())
     }
 
     /// The greatest distance between entities that coincide by the resolution; zero if none of them
@@ -126,6 +132,7 @@ impl Evaluation {
             resolution: coarsest(|known| Some(known.resolution)).unwrap_or_default(),
             bounds: boxes.fold(Aabb::EMPTY, |all, own| all.hull(&own)),
             view_resolution: coarsest(|known| known.view_resolution),
+            rounding_gap: coarsest(|known| Some(known.rounding_gap)).unwrap_or_default(),
             mass: OnceLock::new(),
             integrals: Integrals::Components(components),
         }
@@ -228,6 +235,7 @@ impl From<Evaluated<f64>> for Evaluation {
             bounds: known.bounds,
             integrals: Integrals::Doubles(known.measures),
             view_resolution: Some(known.resolution),
+            rounding_gap: 0.0,
             mass: OnceLock::new(),
         }
     }
@@ -251,8 +259,10 @@ impl<N: Float> Evaluated<N> {
         let mut decisions = self.decisions;
         // All of them took more bits than f64 has.
         decisions.refined += std::mem::take(&mut decisions.filtered);
+        let brep = self.brep.to_f64();
+        let gap = worst_gap(&brep, self.resolution);
         Evaluation {
-            brep: self.brep.to_f64(),
+            brep,
             decisions,
             resolution: self.resolution,
             bounds: self.bounds,
@@ -261,6 +271,7 @@ impl<N: Float> Evaluated<N> {
                 measures: self.measures,
             })),
             view_resolution: None,
+            rounding_gap: gap.map_or(0.0, |gap| gap.distance),
             mass: OnceLock::new(),
         }
     }

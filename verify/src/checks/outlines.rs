@@ -240,6 +240,17 @@ impl Search<'_> {
         fall > deep && fall > NEAR * slope()
     }
 
+    /// Whether the surfaces of a change are at one depth within rounding. Rounding decides which of two
+    /// tangent surfaces is hit, within the square root of it from where they touch.
+    fn is_tie(&self, change: &Change, index: usize) -> bool {
+        let [first, second] = &change.hits;
+        let (Some(a), Some(b)) = (first.get(index), second.get(index)) else {
+            return false;
+        };
+        let length = self.window.ray(change.at[0]).direction.norm();
+        (a.at - b.at).abs() * length <= ROUNDING * self.clearance.size
+    }
+
     /// What is missing at a change; `None` if a contour explains it.
     fn lack(&self, change: &Change, images: &Images<'_>) -> Option<Missing> {
         let [a, b] = change.at;
@@ -261,7 +272,11 @@ impl Search<'_> {
             .filter_map(|hits| hits.get(index))
             .fold(f64::INFINITY, |least, c| c.at.min(least));
         let deep = deep(depth);
-        let near = NEAR * width + self.clearance.shift / self.window.scale(depth);
+        let scale = self.window.scale(depth);
+        let mut near = NEAR * width + self.clearance.shift / scale;
+        if self.is_tie(change, index) {
+            near += ROUNDING.sqrt() * self.clearance.size / scale;
+        }
         let until = self.steep_until(change, index, deep).unwrap_or(depth);
         let there = |p: &Passing| p.depth[0] - deep <= until && depth <= p.depth[1] + deep;
         // What begins there closer to the eye may be narrower than the interval.

@@ -105,6 +105,20 @@ fn a_wall_narrower_than_the_last_interval_has_its_contours() {
     assert!(found.explained > 30, "{found}");
 }
 
+/// A line of 5e-3 of the image's size crosses the smooth edge of a wall and a rounded corner: its last
+/// interval is 4e-9 wide, and up to 1e-7 from the edge rounding decides which of the two is hit.
+#[test]
+fn a_smooth_edge_on_a_short_line_has_its_contour() {
+    let part = Part::new(
+        "P = PRI(PGN((0.5, -0.5), (2.5, -0.5, 2.5, 1, 1.5), (4, 1), (4, 3.5, 2.5, 3.5, 1.5), \
+             (2.5, 5), (0.5, 5, 0.5, 3.5, 1.5), (-1, 3.5), (-1, 1, 0.5, 1, 1.5)), H=3.5) \
+             AT (MOVZ=0.5, ROTZ=90) \
+         DIF SPH(R=0.5)",
+    );
+    let found = part.outlines(&part.contours(&part.view("along y")));
+    assert!(found.missing.is_empty(), "{found}");
+}
+
 #[test]
 fn a_missing_contour_is_missed() {
     let mut limbs = 0;

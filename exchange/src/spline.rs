@@ -355,8 +355,8 @@ impl Follow<'_> {
         half * (sum + CENTRE * at(0.0))
     }
 
-    /// Whether the splines between two nodes are within the accuracy: at the same parameter of the
-    /// spline in space, or of the curve if it is written exactly.
+    /// Whether the splines between two nodes are within the accuracy: of the curve, at the same parameter
+    /// if it is written exactly.
     fn follows(&self, a: &Node, b: &Node) -> bool {
         let length = self.length(a.t, b.t);
         let space = Piece {
@@ -366,10 +366,7 @@ impl Follow<'_> {
         let even = (1..PLACES).map(|k| f64::from(k) / f64::from(PLACES));
         let graded = GRADED.iter().flat_map(|&part| [part, 1.0 - part]);
         even.chain(graded).all(|part| {
-            let p = match self.pace {
-                Pace::Length => Point3::from(space.at(part)),
-                Pace::Parameter => self.curve.point(a.t + part * (b.t - a.t)),
-            };
+            let p = Point3::from(space.at(part));
             let near = |q: &Point3<f64>| (p - q).norm() <= self.accuracy;
             let on_surfaces = self.windows.iter().enumerate().all(|(i, window)| {
                 let piece = Piece {
@@ -379,7 +376,11 @@ impl Follow<'_> {
                 window.surface.distance(&p).abs() <= self.accuracy
                     && near(&window.point(piece.at(part)))
             });
-            on_surfaces && near(&self.nearest(&p, [a.t, b.t], part))
+            let on_curve = match self.pace {
+                Pace::Length => self.nearest(&p, [a.t, b.t], part),
+                Pace::Parameter => self.curve.point(a.t + part * (b.t - a.t)),
+            };
+            on_surfaces && near(&on_curve)
         })
     }
 

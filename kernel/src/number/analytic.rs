@@ -24,13 +24,17 @@ pub(super) fn sinc_jet<N: Float>(x: N) -> [N; 3] {
     [value, first, -value - N::TWO * first / x]
 }
 
+/// The largest number of terms of the series, that of 237 bits.
+const MAX_SINC_TERMS: usize = 26;
+
 /// Taylor series. For |x| < 1/2 the omitted terms are below one ulp.
 fn sinc_series<N: Float>(x: N, x2: N) -> [N; 3] {
+    let factorials = odd_factorials::<N>();
     let [mut value, mut first, mut second] = [N::ZERO; 3];
     for n in (0..N::SINC_TERMS).rev() {
         let n2 = N::whole(2 * n);
         let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
-        let c = N::from_f64(sign) / factorial(2 * n + 1);
+        let c = N::from_f64(sign) / factorials[n as usize];
         value = value * x2 + c;
         if n >= 1 {
             first = first * x2 + c * n2;
@@ -40,6 +44,16 @@ fn sinc_series<N: Float>(x: N, x2: N) -> [N; 3] {
     [value, first * x, second]
 }
 
-fn factorial<N: Float>(n: u32) -> N {
-    (2..=n).fold(N::ONE, |product, k| product * N::whole(k))
+/// The factorials of the odd numbers, 1, 3!, 5! and so on, one for each term of the series; the others
+/// are zero.
+fn odd_factorials<N: Float>() -> [N; MAX_SINC_TERMS] {
+    let mut all = [N::ZERO; MAX_SINC_TERMS];
+    let mut product = N::ONE;
+    for (n, known) in (0..N::SINC_TERMS).zip(&mut all) {
+        if n > 0 {
+            product = product * N::whole(2 * n) * N::whole(2 * n + 1);
+        }
+        *known = product;
+    }
+    all
 }

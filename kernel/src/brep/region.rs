@@ -47,6 +47,9 @@ const SLANT: f64 = 0.02;
 /// The fractions of an arc at which a path may start.
 const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
 
+/// The fraction of an arc from its end at which it shows from which side it reaches a pole.
+const NEAR_POLE: f64 = 1.0 / 8.0;
+
 /// The number of directions tried.
 const ATTEMPTS: usize = 4;
 
@@ -265,24 +268,49 @@ impl<N: Float> Sorter<'_, N> {
             && let Some(down) = legs.pop()
         {
             let height = down.at(&apex);
-            let around = self.arcs.around(&apex);
-            let passed = around
-                .into_iter()
-                .any(|i| self.arcs.ends_at(i, &apex, self.resolution));
-            if passed {
-                let near = (self.resolution / height).approximate_root(2 + attempt as u32);
-                let height = height * (N::ONE - near);
+            let mut ends: Vec<usize> = self.arcs.around(&apex).collect();
+            ends.retain(|&i| self.arcs.ends_at(i, &apex, self.resolution));
+            let is_passed = ends.iter().any(|&i| self.is_below(i, &apex));
+            let near = match ends.is_empty() {
+                true => N::ZERO,
+                false => (self.resolution / height).approximate_root(2 + attempt as u32),
+            };
+            let height = height * (N::ONE - near);
+            if is_passed {
                 let corner = down.point(height);
-                let round =
-                    SurfacePath::parallel(self.surface, &corner, Sense::Along, self.resolution);
-                legs.push(down.upto(height));
-                legs.extend(round);
+                let Some(round) =
+                    SurfacePath::parallel(self.surface, &corner, Sense::Along, self.resolution)
+                else {
+                    return false;
+                };
+                legs.extend([down.upto(height), round]);
             } else {
                 end = PathEnd::Point(self.parent.len() - 1);
                 legs.push(down.upto(height));
             }
         }
         self.follow(ring, start.arc, &start.point, &start.left, &legs, end)
+    }
+
+    /// Whether an arc that ends at the lowest point does so from where paths downwards arrive. Both poles
+    /// of a horn torus are one point, and an arc may reach it from above.
+    fn is_below(&self, arc: usize, lowest: &Point3<N>) -> bool {
+        match self.surface {
+            Surface::Torus(torus) if torus.is_horn() => {
+                let DirectedArc { curve, range, .. } = self.arcs.all[arc];
+                let ends = [range, [range[1], range[0]]];
+                let from = |[end, other]: [N; 2]| {
+                    let inside = end + N::from_f64(NEAR_POLE) * (other - end);
+                    let height = torus.frame.coordinates(&curve.point(inside)).z;
+                    (curve.point(end) - lowest)
+                        .length()
+                        .is_within(self.resolution)
+                        && height.is_below_zero()
+                };
+                ends.into_iter().any(from)
+            }
+            _ => true,
+        }
     }
 
     /// A turn along the parallel into the face, then downwards.

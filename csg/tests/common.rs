@@ -49,11 +49,12 @@ pub fn tree_of(make: impl FnOnce(&mut Builder) -> SolidId) -> Tree {
 }
 
 /// The tree of a description.
+#[track_caller]
 pub fn tree(text: &str, format: Format) -> Tree {
-    let options = ReadOptions::default();
-    read("part", text.as_bytes(), format, &options)
-        .unwrap()
-        .tree
+    match read("part", text.as_bytes(), format, &ReadOptions::default()) {
+        Ok(description) => description.tree,
+        Err(error) => panic!("{error}\n{text}"),
+    }
 }
 
 /// The boundary of a tree, which is valid.

@@ -11,6 +11,7 @@ mod escalation;
 mod face_colours;
 mod formats;
 mod openscad;
+mod pinched_tori;
 mod polyhedra;
 mod rays;
 mod reading;

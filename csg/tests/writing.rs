@@ -1,9 +1,10 @@
 //! Tests of the writers: written text is read as the same tree.
 
+use crate::common::tree;
 use insta::assert_snapshot;
 use premio_csg::builder::Builder;
 use premio_csg::primitive::Primitive;
-use premio_csg::reader::{Format, Program, ReadOptions, parse, read};
+use premio_csg::reader::{Format, Program, ReadOptions, parse};
 use premio_csg::transform::{Transform, TransformStep};
 use premio_csg::tree::{Operation, Tree};
 use premio_csg::writer::write;
@@ -16,13 +17,6 @@ fn parsed(text: &str, format: Format) -> Program {
 fn written(text: &str, from: Format, to: Format) -> String {
     let source = parsed(text, from);
     write(&source.builder, source.part, to).unwrap()
-}
-
-fn tree(text: &str, format: Format) -> Tree {
-    match read("part", text.as_bytes(), format, &ReadOptions::default()) {
-        Ok(description) => description.tree,
-        Err(error) => panic!("{error}\n{text}"),
-    }
 }
 
 /// Asserts that a text written in another language, and written there again, gives the same tree.

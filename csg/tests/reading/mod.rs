@@ -11,24 +11,17 @@ mod padl_words;
 mod pov;
 mod robustness;
 
+use crate::common::tree;
 use nalgebra::Vector3;
 use premio_csg::figure::Figure;
 use premio_csg::polyhedron::Polyhedron;
 use premio_csg::primitive::Primitive;
 use premio_csg::reader::*;
-use premio_csg::tree::Tree;
-use premio_csg::tree::{NodeId, Operation, PlacedPrimitive, TreeNode};
+use premio_csg::tree::{NodeId, Operation, PlacedPrimitive, Tree, TreeNode};
 use premio_kernel::number::rational::{Rational, to_f64};
 
 fn read_text(text: &str, format: Format) -> Result<Description, ReadError> {
     read("part", text.as_bytes(), format, &ReadOptions::default())
-}
-
-fn tree(text: &str, format: Format) -> Tree {
-    match read_text(text, format) {
-        Ok(description) => description.tree,
-        Err(error) => panic!("{error}\n{text}"),
-    }
 }
 
 fn message(text: &str, format: Format) -> String {

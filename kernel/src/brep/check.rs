@@ -92,6 +92,14 @@ pub enum Violation {
         /// The area of the surface.
         whole: f64,
     },
+    /// The boundary of a face does not close in the parameters of its surface.
+    #[error("the boundary of face {} is open by {defect:e} in the parameters of its surface", face.0)]
+    Closure {
+        /// The face.
+        face: FaceId,
+        /// The defect: an angle in radians, or a length relative to the part's size.
+        defect: f64,
+    },
     /// The integrals over a face depend on how its edges are divided.
     #[error("face {} has the area {} or {}, depending on the division of its edges", face.0, areas[0], areas[1])]
     Integral {
@@ -153,6 +161,10 @@ impl Violation {
             Self::Area { face, area } => Self::Area {
                 face: ids.face(face),
                 area,
+            },
+            Self::Closure { face, defect } => Self::Closure {
+                face: ids.face(face),
+                defect,
             },
             Self::Overlap { face, area, whole } => Self::Overlap {
                 face: ids.face(face),
@@ -237,6 +249,7 @@ pub fn check<N: Float>(
     check_shells(brep, measures, &mut found);
     let areas = measures.areas(brep);
     check_areas(&areas, &mut found);
+    check_closures(measures, &mut found);
     check_overlaps(brep, &areas, &mut found);
     found
 }
@@ -264,6 +277,23 @@ fn check_areas<N: Float>(areas: &[FaceArea<N>], found: &mut Vec<Violation>) {
     }
 }
 
+/// The defect of a closure, in radians or relative to the part's size, that directions of edges known
+/// inaccurately may cause. Beyond it a part of a loop is missing, such as one within the resolution of a
+/// pole.
+const OPEN: f64 = 1.0 / (1 << 10) as f64;
+
+/// Around a face the angle about its surface's axis returns by whole turns.
+fn check_closures<N: Float>(measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
+    for (i, &defect) in measures.defects().iter().enumerate() {
+        if defect.is_beyond(N::from_f64(OPEN)) {
+            found.push(Violation::Closure {
+                face: FaceId(i as u32),
+                defect: defect.rounded(),
+            });
+        }
+    }
+}
+
 /// The part of a closed surface by which its faces may exceed it: the error of their areas.
 const EXCESS: f64 = 1.0 / (1 << 10) as f64;
 
@@ -271,7 +301,12 @@ const EXCESS: f64 = 1.0 / (1 << 10) as f64;
 fn check_overlaps<N: Float>(brep: &Brep<N>, areas: &[FaceArea<N>], found: &mut Vec<Violation>) {
     let whole = |surface: &Surface<N>| match surface {
         Surface::Sphere(s) => Some(N::TWO * N::TAU * s.radius * s.radius),
-        Surface::Torus(t) if t.is_ring() => Some(N::TAU * N::TAU * t.major * t.minor),
+        Surface::Torus(t) => {
+            // The integral of the distance from the axis, from pole to pole.
+            let pole = t.pole_angle();
+            let distances = t.major * pole + t.minor * pole.sin();
+            Some(N::TWO * N::TAU * t.minor * distances)
+        }
         _ => None,
     };
     let mut sums: BTreeMap<(usize, bool), N> = BTreeMap::new();

@@ -69,8 +69,8 @@ pub struct FaceIntegrals<N: Float = f64> {
     shells: Vec<Amid<N>>,
     /// The moments of each face about the reference point of its shell.
     faces: Vec<Moments<N>>,
-    /// The largest defect of the closure of a face's boundary.
-    defect: N,
+    /// The defect of the closure of each face's boundary.
+    defects: Vec<N>,
 }
 
 impl<N: Float> FaceIntegrals<N> {
@@ -100,7 +100,7 @@ impl<N: Float> FaceIntegrals<N> {
         });
         Self {
             whole: Amid::new(brep, brep.topology.face_ids(), care),
-            defect: sums.iter().fold(N::ZERO, |most, sum| most.max(sum.defect)),
+            defects: sums.iter().map(|sum| sum.defect).collect(),
             faces: sums.into_iter().map(|sum| sum.moments).collect(),
             shells,
         }
@@ -110,7 +110,15 @@ impl<N: Float> FaceIntegrals<N> {
     /// Where surfaces nearly touch, the direction of an edge is known less accurately than its
     /// points, and the integral of du around a face does not close by as much.
     pub fn precision(&self) -> N {
-        self.defect
+        self.defects
+            .iter()
+            .fold(N::ZERO, |most, defect| most.max(*defect))
+    }
+
+    /// The defect of the closure of each face's boundary: in radians, or relative to the part's size on a
+    /// plane.
+    pub(crate) fn defects(&self) -> &[N] {
+        &self.defects
     }
 
     /// The faces over which two computations of the integrals differ by more than their errors.
@@ -119,7 +127,7 @@ impl<N: Float> FaceIntegrals<N> {
         brep: &'a Brep<N>,
         other: &'a Self,
     ) -> impl Iterator<Item = FaceDifference> + 'a {
-        let defect = N::TWO * self.defect.max(other.defect);
+        let defect = N::TWO * self.precision().max(other.precision());
         brep.topology.face_ids().filter_map(move |face| {
             let [ours, theirs] = [self, other].map(|known| known.faces[face.index()]);
             let shell = &self.shells[brep.topology.face(face).shell.index()];

@@ -43,7 +43,7 @@ impl<N: Float> Cone<N> {
 }
 
 impl<N: Float> Torus<N> {
-    fn to_f64(self) -> Torus {
+    pub(crate) fn to_f64(self) -> Torus {
         Torus {
             frame: self.frame.to_f64(),
             major: self.major.rounded(),

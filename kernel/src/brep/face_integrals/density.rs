@@ -35,17 +35,14 @@ impl<N: Float> Density<'_, N> {
         self.defect.set(self.defect.get().max(defect.abs()));
     }
 
-    /// The v from which the integral along v starts for a loop. It is amid the loop's edges, so
-    /// that what they have in common need not cancel.
-    pub fn start(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> N {
+    /// Whether a loop may pass through a cone's apex. There u jumps, so ∮ du is no whole number of turns
+    /// and there may be nothing amid the edges; G is zero if it starts at the apex.
+    pub fn may_jump(&self, brep: &Brep<N>, coedges: &[CoedgeId]) -> bool {
         match &self.ground.surface {
-            // At the apex u jumps, so there may be nothing in between.
-            cone @ (Surface::Cone(_) | Surface::EllipticCone(_))
-                if reaches(brep, coedges, &cone.frame().origin) =>
-            {
-                self.ground.base
+            cone @ (Surface::Cone(_) | Surface::EllipticCone(_)) => {
+                reaches(brep, coedges, &cone.frame().origin)
             }
-            _ => amid_edges(brep, &self.ground, coedges),
+            _ => false,
         }
     }
 
@@ -77,8 +74,8 @@ fn reaches<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], p: &Point3<N>) -> boo
     })
 }
 
-/// A v amid the edges of a face.
-fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]) -> N {
+/// A v amid the edges of a face, so that what they have in common need not cancel.
+pub(super) fn amid_edges<N: Float>(brep: &Brep<N>, ground: &Ground<N>, coedges: &[CoedgeId]) -> N {
     let middle = |&c: &CoedgeId| {
         let e = brep.topology.coedge(c).edge;
         let [lo, hi] = brep.range(e);

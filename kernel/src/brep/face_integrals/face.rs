@@ -3,7 +3,7 @@
 use super::density::{Density, add};
 use super::ground::{Ground, Middle};
 use super::outline::boundary_sum;
-use super::pole_turns::pole_turns;
+use super::pole_turns::{is_pole, pole_turns};
 use super::{Amid, Moments};
 use crate::brep::Brep;
 use crate::brep::arcs::Arcs;
@@ -76,9 +76,10 @@ pub(super) fn face_sum<N: Float>(brep: &Brep<N>, face: FaceId, amid: &Amid<N>) -
             let whole = d.between(base, -base);
             let turns = pole_turns(brep, &surface, &coedges, brep.sense(face));
             let passes_upper = turns.iter().any(|turn| turn.v.is_above_zero());
-            let holds = match (passes_upper, t.poles().next()) {
-                (false, Some(upper)) => holds_far(brep, face, amid, sum[0] / whole[0], &upper),
-                _ => Some(false),
+            let part = sum[0] / whole[0];
+            let holds = match passes_upper {
+                true => Some(false),
+                false => holds_far(brep, face, amid, part, &far_point(brep, &coedges, t)),
             };
             with_far(sum, whole, holds)
         }
@@ -145,6 +146,23 @@ fn holds_far<N: Float>(
         PointLocation::Outside => Some(false),
         PointLocation::On => None,
     }
+}
+
+/// The upper pole of a torus that reaches its axis. Of a horn torus, whose poles are one point, it is a
+/// point between all edges and the upper pole.
+fn far_point<N: Float>(brep: &Brep<N>, coedges: &[CoedgeId], torus: &Torus<N>) -> Point3<N> {
+    let surface = Surface::Torus(*torus);
+    let pole = torus.pole_angle();
+    if !torus.is_horn() {
+        return surface.point(N::ZERO, pole);
+    }
+    let rounded = torus.to_f64();
+    let points = samples(brep, coedges).into_iter();
+    // At the pole the angle about the tube is not defined.
+    let away = points.filter(|p| !is_pole(&rounded, p));
+    let angles = away.map(|p| Surface::Torus(rounded).parameters(&p)[1]);
+    let uppermost = angles.reduce(f64::max).unwrap_or(0.0);
+    surface.point(N::ZERO, N::HALF * (N::from_f64(uppermost) + pole))
 }
 
 /// The multiple of rounding, relative to the whole surface, below which the sign of an area may be

@@ -1,7 +1,7 @@
 //! Sums around the boundary of a face, by Green's theorem.
 
 use super::closed_form::along_edge;
-use super::density::{Density, add};
+use super::density::{Density, add, amid_edges};
 use super::ground::{OnEdge, RoundedEdge};
 use super::pole_turns::pole_turns;
 use super::{EdgeDivision, Moments};
@@ -56,7 +56,7 @@ struct LoopSum<N: Float> {
     turns: N,
 }
 
-/// ∮ G du over a loop, with G starting amid its edges.
+/// ∮ G du over a loop, with G starting amid its edges, or at a cone's apex that the loop may pass.
 fn loop_sum<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
@@ -64,7 +64,11 @@ fn loop_sum<N: Float>(
     density: &Density<'_, N>,
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> LoopSum<N> {
-    let start = density.start(brep, coedges);
+    let may_jump = density.may_jump(brep, coedges);
+    let start = match may_jump {
+        true => density.ground.base,
+        false => amid_edges(brep, &density.ground, coedges),
+    };
     let mut total = [N::ZERO; 6];
     for &c in coedges {
         let sign = brep.topology.coedge(c).sense.sign::<N>();
@@ -85,7 +89,9 @@ fn loop_sum<N: Float>(
         Surface::Plane(_) => N::ZERO,
         _ => (way / N::TAU).round(),
     };
-    density.note_closure(way, turns);
+    if !may_jump {
+        density.note_closure(way, turns);
+    }
     LoopSum {
         sum: [a, v, x, y, z],
         start,

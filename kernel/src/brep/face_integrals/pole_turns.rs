@@ -110,7 +110,8 @@ fn sector<N: Float>(ends: [&CoedgeEnd<'_, N>; 2], torus: &Torus<N>, is_backward:
     }
 }
 
-fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
+/// Whether a vertex is at a pole.
+pub(super) fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
     let near = torus.minor * N::from_f64(AT_POLE);
     let mut poles = torus.poles();
     poles.any(|pole| (pole - p).length().is_within(near))

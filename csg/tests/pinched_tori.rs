@@ -1,0 +1,51 @@
+//! Tori whose tube reaches their axis, cut by blocks with corners at the poles and next to them.
+
+use crate::common::{evaluated, tree};
+use premio_csg::reader::Format;
+use proptest::prelude::*;
+
+/// The radii, and half the distance of the poles: horn tori and spindle tori.
+const TORI: [([f64; 2], f64); 4] = [
+    ([2.0, 2.0], 0.0),
+    ([0.5, 0.5], 0.0),
+    ([1.5, 2.5], 2.0),
+    ([3.0, 5.0], 4.0),
+];
+
+/// The volume of a torus less a block, and that of their intersection, make up the whole torus.
+fn assert_additive(radii: [f64; 2], block: &str) {
+    let [major, minor] = radii;
+    let torus = format!("TOR(RMAJ={major}, RMIN={minor})");
+    let volume = |part: &str| {
+        let known = evaluated(&tree(&format!("P = {part}\n"), Format::Padl));
+        known.mass().volume
+    };
+    let whole = volume(&torus);
+    let parts = ["DIF", "INT"].map(|op| volume(&format!("{torus} {op} {block}")));
+    let off = parts.iter().sum::<f64>() - whole;
+    assert!(
+        off.abs() <= 1e-9 * whole,
+        "{torus}, {block}: {parts:?} of {whole}"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_torus_less_a_block_and_their_intersection_make_up_the_torus(
+        torus in 0..TORI.len(),
+        size in [1..6, 1..6, 1..6],
+        corner in [-2..2, -2..2, -2..2],
+        at_pole in any::<bool>(),
+        off in prop::sample::select(vec!["0", "0.00001", "0.00000001", "-0.00000001", "0.0000000001"]),
+    ) {
+        let (radii, pole) = TORI[torus];
+        let half = |k: i32| f64::from(k) / 2.0;
+        let [x, y, z] = size.map(half);
+        let [a, b, c] = corner.map(half);
+        let c = if at_pole { c + pole } else { c };
+        let block = format!("BLO(X={x}, Y={y}, Z={z}) AT (MOVX={a}, MOVY={b}, MOVZ={c}, MOVZ={off})");
+        assert_additive(radii, &block);
+    }
+}

@@ -448,6 +448,33 @@ fn tolerances_have_one_place() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// The unit tests of `csg` would compile the evaluation, half of the code of a build, once more.
+#[test]
+fn unit_tests_of_csg_neither_evaluate_nor_read() {
+    let needs_evaluation = [
+        "evaluate(",
+        "evaluated(",
+        "evaluated::<",
+        "reader::{",
+        "reader::read",
+    ];
+    for path in sources() {
+        if !path.starts_with(root().join("csg/src")) {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let tests = match is_for_tests(&path) {
+            true => text.as_str(),
+            false => text
+                .split_once("#[cfg(test)]")
+                .map_or("", |(_, tests)| tests),
+        };
+        for word in needs_evaluation {
+            assert!(!tests.contains(word), "{}: {word}", path.display());
+        }
+    }
+}
+
 #[test]
 fn no_test_is_switched_off() {
     let switched_off = concat!("#[", "ignore");

@@ -23,8 +23,9 @@ pub(super) struct PoleTurn<N: Float> {
     pub by: N,
 }
 
-/// The distance of a vertex from a pole, relative to the torus, below which it is the pole.
-const AT_POLE: f64 = 1.0 / (1 << 30) as f64;
+/// The distance of a vertex from a pole below which it is the pole, relative to the torus and to the square
+/// root of the numbers' precision. In more bits, vertices may be closer to a pole without being it.
+const AT_POLE: f64 = 1.0 / 16.0;
 
 /// The fraction of an edge from its end at which a point stands for the edge's direction.
 const NEXT_TO_END: f64 = 1.0 / (1 << 10) as f64;
@@ -112,7 +113,7 @@ fn sector<N: Float>(ends: [&CoedgeEnd<'_, N>; 2], torus: &Torus<N>, is_backward:
 
 /// Whether a vertex is at a pole.
 pub(super) fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
-    let near = torus.minor * N::from_f64(AT_POLE);
+    let near = torus.minor * N::EPSILON.sqrt() * N::from_f64(AT_POLE);
     let mut poles = torus.poles();
     poles.any(|pole| (pole - p).length().is_within(near))
 }

@@ -11,7 +11,12 @@ fn halvings<N: Float>() -> u32 {
 }
 
 /// The zero of `g` in [a, b], to the last digit. `g` has opposite signs at the ends; `ga` is g(a).
-pub fn bisect<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> N) -> N {
+pub fn bisect<N: Float>(a: N, b: N, ga: N, g: impl Fn(N) -> N) -> N {
+    bisected([a, b], ga, &g)
+}
+
+/// The same for any function, so that it is compiled once.
+fn bisected<N: Float>([mut a, mut b]: [N; 2], ga: N, g: &dyn Fn(N) -> N) -> N {
     if ga == N::ZERO {
         return a;
     }
@@ -48,7 +53,16 @@ pub struct ValueAndSlope<N: Float = f64> {
 /// leaves an error of |g''/2g'| s^2, with g'' estimated from the last two points. Close to zero,
 /// where rounding is not relative, it ends where this error is below the rounding of the bracket's
 /// ends and steps no longer shrink.
-pub fn bisect_newton<N: Float>(mut a: N, mut b: N, ga: N, g: impl Fn(N) -> ValueAndSlope<N>) -> N {
+pub fn bisect_newton<N: Float>(a: N, b: N, ga: N, g: impl Fn(N) -> ValueAndSlope<N>) -> N {
+    newton_bisected([a, b], ga, &g)
+}
+
+/// The same for any function, so that it is compiled once.
+fn newton_bisected<N: Float>(
+    [mut a, mut b]: [N; 2],
+    ga: N,
+    g: &dyn Fn(N) -> ValueAndSlope<N>,
+) -> N {
     if ga == N::ZERO {
         return a;
     }

@@ -42,7 +42,7 @@ pub(super) struct ChebyshevModel<N: Float> {
 impl<N: Float> ChebyshevModel<N> {
     /// The model of `f` on [a, b] with an error of at most `off`; `None` if the estimate exceeds
     /// it.
-    pub(super) fn new(f: &impl Function<N>, [a, b]: [N; 2], off: N) -> Option<Self> {
+    pub(super) fn new(f: &dyn Function<N>, [a, b]: [N; 2], off: N) -> Option<Self> {
         let (middle, half) = (N::HALF * (a + b), N::HALF * (b - a));
         let series = series(|s| f.value(middle + half * s));
         let near = off / N::from_f64(NEARER);

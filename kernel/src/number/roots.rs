@@ -117,8 +117,9 @@ const MANY: u32 = 64;
 /// so that a function that is constant at the edge of the resolution can still be classified.
 const FINE: f64 = 1.0 / 256.0;
 
-struct Search<'a, F, N: Float> {
-    f: &'a F,
+// The function is a trait object: the search is compiled once for all of them.
+struct Search<'a, N: Float> {
+    f: &'a dyn Function<N>,
     resolution: N,
     /// The largest absolute value that is reported as a near miss.
     reach: N,
@@ -130,7 +131,7 @@ struct Search<'a, F, N: Float> {
 /// The roots of `f` on the pieces between consecutive `breaks`, on each of which `f` is smooth. For
 /// a closed curve the breaks span a whole period, and the caller identifies its ends. Near misses
 /// are not searched for.
-pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> Roots<N> {
+pub fn isolate<N: Float>(f: &dyn Function<N>, breaks: &[N], resolution: N) -> Roots<N> {
     // Without a limit, there is no error.
     search(f, breaks, resolution, resolution, u32::MAX).unwrap_or(Roots::NONE)
 }
@@ -139,8 +140,8 @@ pub fn isolate<N: Float, F: Function<N>>(f: &F, breaks: &[N], resolution: N) -> 
 ///
 /// # Errors
 /// The roots take too many halvings.
-pub(crate) fn isolate_closely<N: Float, F: Function<N>>(
-    f: &F,
+pub(crate) fn isolate_closely<N: Float>(
+    f: &dyn Function<N>,
     breaks: &[N],
     resolution: N,
 ) -> Result<Roots<N>, Inseparable> {
@@ -161,8 +162,8 @@ pub struct Inseparable;
 /// than a hundred.
 const MOST: u32 = 1 << 12;
 
-fn search<N: Float, F: Function<N>>(
-    f: &F,
+fn search<N: Float>(
+    f: &dyn Function<N>,
     breaks: &[N],
     resolution: N,
     reach: N,
@@ -187,7 +188,7 @@ fn search<N: Float, F: Function<N>>(
     Ok(search.finish(first, last))
 }
 
-impl<N: Float, F: Function<N>> Search<'_, F, N> {
+impl<N: Float> Search<'_, N> {
     fn value(&self, t: N) -> N {
         self.f.value(t)
     }
@@ -552,7 +553,7 @@ impl<N: Float, F: Function<N>> Search<'_, F, N> {
 
     /// The zero of a derivative in or next to a cluster; if there is none, the point of its least
     /// absolute value.
-    fn balance(&self, lo: N, hi: N, part: impl Fn(Jet<N>) -> N) -> N {
+    fn balance(&self, lo: N, hi: N, part: fn(Jet<N>) -> N) -> N {
         let g = |t: N| part(self.f.at(t));
         let middle = (N::HALF * (lo + hi), g(N::HALF * (lo + hi)));
         let mut least = middle;

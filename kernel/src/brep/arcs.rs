@@ -4,12 +4,27 @@
 use super::surface_path::{DirectedArc, SurfacePath};
 use crate::geometry::bounds::{Aabb, CurvePiece, bounds, pieces};
 use crate::geometry::curve::Curve;
+use crate::geometry::surface::Torus;
 use crate::geometry::vector::{Length, rounded};
 use crate::number::float::Float;
 use crate::number::predicates::Compare;
 use nalgebra::Point3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
+
+/// The fraction of an arc from its end at which a point shows from which side the arc reaches a pole.
+const NEAR_POLE: f64 = 1.0 / 8.0;
+
+/// Whether an arc on a horn torus reaches the pole from above. Both poles are one point. The arc is at the
+/// pole at `end`, and `other` is its other end.
+pub(super) fn reaches_from_above<N: Float>(
+    torus: &Torus<N>,
+    curve: &Curve<N>,
+    [end, other]: [N; 2],
+) -> bool {
+    let inside = curve.point(end + N::from_f64(NEAR_POLE) * (other - end));
+    torus.frame.coordinates(&inside).z.is_above_zero()
+}
 
 type ArcBox = GeomWithData<Rectangle<[f64; 3]>, usize>;
 

@@ -11,7 +11,7 @@
 mod following;
 mod torus;
 
-use super::arcs::Arcs;
+use super::arcs::{Arcs, reaches_from_above};
 use super::surface_path::{DirectedArc, SurfacePath};
 use super::topology::Sense;
 use crate::geometry::bounds::Aabb;
@@ -46,9 +46,6 @@ const SLANT: f64 = 0.02;
 
 /// The fractions of an arc at which a path may start.
 const STARTS: [f64; 7] = [0.5, 0.31, 0.73, 0.11, 0.87, 0.42, 0.66];
-
-/// The fraction of an arc from its end at which it shows from which side it reaches a pole.
-const NEAR_POLE: f64 = 1.0 / 8.0;
 
 /// The number of directions tried.
 const ATTEMPTS: usize = 4;
@@ -292,25 +289,18 @@ impl<N: Float> Sorter<'_, N> {
         self.follow(ring, start.arc, &start.point, &start.left, &legs, end)
     }
 
-    /// Whether an arc that ends at the lowest point does so from where paths downwards arrive. Both poles
-    /// of a horn torus are one point, and an arc may reach it from above.
+    /// Whether an arc that ends at the lowest point arrives there from where downward paths do. Both
+    /// poles of a horn torus are one point, and an arc may reach it from above.
     fn is_below(&self, arc: usize, lowest: &Point3<N>) -> bool {
-        match self.surface {
-            Surface::Torus(torus) if torus.is_horn() => {
-                let DirectedArc { curve, range, .. } = self.arcs.all[arc];
-                let ends = [range, [range[1], range[0]]];
-                let from = |[end, other]: [N; 2]| {
-                    let inside = end + N::from_f64(NEAR_POLE) * (other - end);
-                    let height = torus.frame.coordinates(&curve.point(inside)).z;
-                    (curve.point(end) - lowest)
-                        .length()
-                        .is_within(self.resolution)
-                        && height.is_below_zero()
-                };
-                ends.into_iter().any(from)
-            }
-            _ => true,
-        }
+        let Surface::Torus(torus) = self.surface else {
+            return true;
+        };
+        let DirectedArc { curve, range, .. } = self.arcs.all[arc];
+        let arrives = |[end, other]: [N; 2]| {
+            let gap = (curve.point(end) - lowest).length();
+            gap.is_within(self.resolution) && !reaches_from_above(torus, curve, [end, other])
+        };
+        !torus.is_horn() || arrives(range) || arrives([range[1], range[0]])
     }
 
     /// A turn along the parallel into the face, then downwards.

@@ -4,6 +4,7 @@
 //! runs along the part of that segment that its face covers.
 
 use crate::brep::Brep;
+use crate::brep::arcs::reaches_from_above;
 use crate::brep::topology::{CoedgeId, Sense};
 use crate::geometry::curve::Curve;
 use crate::geometry::surface::{Surface, Torus};
@@ -23,8 +24,8 @@ pub(super) struct PoleTurn<N: Float> {
     pub by: N,
 }
 
-/// The distance of a vertex from a pole below which it is the pole, relative to the torus and to the square
-/// root of the numbers' precision. In more bits, vertices may be closer to a pole without being it.
+/// The distance from a pole within which a vertex is at the pole, relative to the minor radius times the
+/// square root of the machine epsilon. With more bits, vertices lie closer to a pole and are not at it.
 const AT_POLE: f64 = 1.0 / 16.0;
 
 /// The fraction of an edge from its end at which a point stands for the edge's direction.
@@ -36,9 +37,6 @@ const TANGENT_OFF: f64 = 1.0 / 16.0;
 
 /// The error of a sector between known tangents.
 const SAME_ANGLE: f64 = 1.0 / (1 << 20) as f64;
-
-/// The fraction of an edge from its end at which it shows which pole it approaches.
-const NEAR_POLE: f64 = 1.0 / 8.0;
 
 /// The turns of a loop at the poles of its surface, in order. `side` is the sense of the face's
 /// outward normal relative to the surface's.
@@ -63,11 +61,14 @@ pub(super) fn pole_turns<N: Float>(
             CoedgeEnd::first(brep, leaving),
         ];
         // Both poles of a horn torus are one point.
-        let shown = match torus.is_horn() {
-            true => arrival.inside(torus, NEAR_POLE),
-            false => torus.frame.coordinates(&brep.point(vertex)),
+        let is_upper = match torus.is_horn() {
+            true => reaches_from_above(torus, arrival.curve, [arrival.at, arrival.other]),
+            false => torus
+                .frame
+                .coordinates(&brep.point(vertex))
+                .z
+                .is_above_zero(),
         };
-        let is_upper = shown.z.is_above_zero();
         // Seen from outside, the face is to the left: it lies behind a turn at the upper pole, and
         // ahead of one at the lower pole.
         let is_backward = is_upper == (side == Sense::Along);
@@ -111,7 +112,7 @@ fn sector<N: Float>(ends: [&CoedgeEnd<'_, N>; 2], torus: &Torus<N>, is_backward:
     }
 }
 
-/// Whether a vertex is at a pole.
+/// Whether a point is at a pole.
 pub(super) fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
     let near = torus.minor * N::EPSILON.sqrt() * N::from_f64(AT_POLE);
     let mut poles = torus.poles();

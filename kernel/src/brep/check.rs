@@ -277,12 +277,11 @@ fn check_areas<N: Float>(areas: &[FaceArea<N>], found: &mut Vec<Violation>) {
     }
 }
 
-/// The defect of a closure, in radians or relative to the part's size, that directions of edges known
-/// inaccurately may cause. Beyond it a part of a loop is missing, such as one within the resolution of a
-/// pole.
+/// The largest defect of closure, in radians or relative to the part's size, that inaccurate tangents of
+/// edges cause. With a larger one, a piece of a loop is missing, such as an edge around a pole.
 const OPEN: f64 = 1.0 / (1 << 10) as f64;
 
-/// Around a face the angle about its surface's axis returns by whole turns.
+/// Around each loop, the angle about the surface's axis changes by whole turns.
 fn check_closures<N: Float>(measures: &FaceIntegrals<N>, found: &mut Vec<Violation>) {
     for (i, &defect) in measures.defects().iter().enumerate() {
         if defect.is_beyond(N::from_f64(OPEN)) {

@@ -15,7 +15,7 @@ pub fn bisect<N: Float>(a: N, b: N, ga: N, g: impl Fn(N) -> N) -> N {
     bisected([a, b], ga, &g)
 }
 
-/// The same for any function, so that it is compiled once.
+/// [`bisect`] with a trait object: it is compiled once for all functions.
 fn bisected<N: Float>([mut a, mut b]: [N; 2], ga: N, g: &dyn Fn(N) -> N) -> N {
     if ga == N::ZERO {
         return a;
@@ -57,7 +57,7 @@ pub fn bisect_newton<N: Float>(a: N, b: N, ga: N, g: impl Fn(N) -> ValueAndSlope
     newton_bisected([a, b], ga, &g)
 }
 
-/// The same for any function, so that it is compiled once.
+/// [`bisect_newton`] with a trait object: it is compiled once for all functions.
 fn newton_bisected<N: Float>(
     [mut a, mut b]: [N; 2],
     ga: N,

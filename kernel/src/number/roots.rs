@@ -117,7 +117,8 @@ const MANY: u32 = 64;
 /// so that a function that is constant at the edge of the resolution can still be classified.
 const FINE: f64 = 1.0 / 256.0;
 
-// The function is a trait object: the search is compiled once for all of them.
+/// A search for roots. The function is a trait object, so that the search is compiled once for all
+/// functions.
 struct Search<'a, N: Float> {
     f: &'a dyn Function<N>,
     resolution: N,

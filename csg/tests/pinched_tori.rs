@@ -29,6 +29,15 @@ fn assert_additive(radii: [f64; 2], block: &str) {
     );
 }
 
+/// A face of the block crosses the torus in an edge around the pole that is shorter than the resolution.
+#[test]
+fn blocks_that_end_next_to_a_pole() {
+    let below = "BLO(X=0.5, Y=1.5, Z=0.5) AT (MOVZ=-0.00000001)";
+    assert_additive([2.0, 2.0], below);
+    let above = "BLO(X=0.5, Y=1, Z=1.5) AT (MOVY=-0.5, MOVZ=0.5, MOVZ=0.0000000001)";
+    assert_additive([1.5, 2.5], above);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 

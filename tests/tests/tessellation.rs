@@ -69,7 +69,8 @@ const NARROW: &[(&str, &str)] = &[
     ("a ball with a slit all but around", r#"{"op":"union","children":[{"prim":"sphere","r":0.25,"transform":[{"translate":[3,0,0]}]},{"op":"difference","children":[{"prim":"torus","R":3,"r":0.75},{"prim":"torus","R":3,"r":0.25},{"prim":"block","size":[10,10,0.125],"transform":[{"translate":[-5,-5,0]}]}]}]}"#),
 ];
 
-/// Cases with a face between edges that are 1e-9 apart, or on one line in f64: no triangles are made.
+/// Cases without triangles: a face has edges that are 1e-9 apart or on one line in `f64`, or an edge 4e-17
+/// long.
 const REFUSED: [&str; 3] = [
     "cone-around-a-ball-with-a-lip-of-1e-9",
     "coplanar-faces-tilted-by-1e-7",

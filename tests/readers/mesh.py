@@ -46,7 +46,6 @@ KNOWN = {
     "horn-ring-less-a-block-1e-8-above-its-pole.obj": SLIVER,
     "horn-ring-less-a-block-1e-8-above-its-pole.glb": SLIVER,
     "horn-ring-less-a-block-1e-8-above-its-pole.3mf": SLIVER,
-    "ring-with-a-plate-tilted-by-1e-6.glb": SINGLE,
 }
 # How far triangles are off, as a part of the size, where nothing is said.
 DEVIATION = 1 / 2000

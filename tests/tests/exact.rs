@@ -43,10 +43,6 @@ const MEANT: &[(&str, &str)] = &[
         "ellipsoid-nearly-coaxial-with-a-sphere",
         "the ellipsoid's pole stands 2e-15 out of the sphere",
     ),
-    (
-        "ring-with-a-plate-tilted-by-1e-6",
-        "where the ring is tangent to the wedge, a plane passes at a distance of 6e-9",
-    ),
     ("roof-ridges-crossing", "a ridge's height in decimals"),
     ("steinmetz-with-noise", "noise"),
     ("three-equal-cylinders-with-noise", "noise"),

@@ -16,7 +16,7 @@ use super::edge_joining::{ClassifiedEdge, JoinedEdge, join};
 use super::error::EvaluationError;
 use super::halfspaces::{EndRule, HalfSpaceModel};
 use super::membership::Membership;
-use super::radial_order::{HalfSheet, Spot};
+use super::radial_order::{HalfSheet, MaterialChange, Spot};
 use super::relevance::CloseCallFilter;
 use super::vertices::VertexCandidate;
 use crate::tree::NodeId;
@@ -357,6 +357,10 @@ impl<N: Float> Classifier<'_, N> {
         {
             return Ok(Vec::new());
         }
+        if spot.has_doubtful_order(&sheets, &changes) {
+            let place = rounded(&spot.point);
+            return Err(EvaluationError::AmbiguousEdgeOrder { place });
+        }
         let first = changes.iter().position(|c| c.after).unwrap_or(0);
         changes.rotate_left(first);
         let face_use = |&MaterialChange { sheet, after }: &MaterialChange| {
@@ -534,13 +538,4 @@ impl Sector {
             *within = n.is_within_beyond(sheet).unwrap_or(*within);
         }
     }
-}
-
-/// A sheet at which material begins or ends.
-#[derive(Clone, Copy)]
-struct MaterialChange {
-    /// The index of the sheet.
-    sheet: usize,
-    /// Whether there is material beyond it.
-    after: bool,
 }

@@ -32,6 +32,15 @@ pub(super) struct HalfSheet<N: Float = f64> {
     pub beyond: Sense,
 }
 
+/// A sheet at which material begins or ends.
+#[derive(Clone, Copy)]
+pub(super) struct MaterialChange {
+    /// The index of the sheet.
+    pub sheet: usize,
+    /// Whether there is material beyond it.
+    pub after: bool,
+}
+
 /// The direction in which a carrier leaves a piece.
 struct Axis<N: Float = f64> {
     carrier: usize,
@@ -277,6 +286,40 @@ impl<N: Float> Spot<'_, N> {
     fn is_tangent_along(&self, [a, b]: [usize; 2]) -> bool {
         let mut tangent = self.piece.tangent.iter();
         tangent.any(|t| *t == [a, b] || *t == [b, a])
+    }
+
+    /// Whether two carriers that are not tangent along the piece, but within the resolution, continue
+    /// through it as faces, both with material on one side. Their order at the piece says nothing about that
+    /// at neighbouring pieces.
+    pub(super) fn has_doubtful_order(
+        &self,
+        sheets: &[HalfSheet<N>],
+        changes: &[MaterialChange],
+    ) -> bool {
+        let of = |c: &MaterialChange| &sheets[c.sheet];
+        let side = |c: &MaterialChange| (of(c).beyond == Sense::Along) == c.after;
+        let mut through: Vec<&HalfSheet<N>> = Vec::new();
+        let mut rest = changes;
+        while let Some((a, later)) = rest.split_first() {
+            let mut same = later.iter().filter(|b| of(b).carrier == of(a).carrier);
+            if same.any(|b| side(b) == side(a)) {
+                through.push(of(a));
+            }
+            rest = later;
+        }
+        let mut rest = &through[..];
+        while let Some((a, others)) = rest.split_first() {
+            let is_doubtful = |b: &&HalfSheet<N>| {
+                let sine = a.direction.cross(&b.direction).length();
+                let both = [a, *b].map(|s| self.piece.carriers[s.carrier]);
+                sine.is_exactly(N::ZERO) && !self.is_tangent_along(both)
+            };
+            if others.iter().any(is_doubtful) {
+                return true;
+            }
+            rest = others;
+        }
+        false
     }
 
     fn surface(&self, carrier: usize) -> &Surface<N> {

@@ -15,5 +15,6 @@ mod pinched_tori;
 mod polyhedra;
 mod rays;
 mod reading;
+mod rounding;
 mod swept_figures;
 mod writing;

@@ -1,6 +1,6 @@
 //! The self-checks of a solid, and of its views where these need one.
 
-use premio_csg::evaluate::Evaluation;
+use premio_csg::evaluate::{Evaluation, ViewLimit};
 use premio_csg::tree::Tree;
 use premio_verify::checks::{CheckReport, Checker};
 use premio_visibility::contours::Contours;
@@ -14,8 +14,8 @@ pub(crate) fn checked(tree: &Tree, evaluation: &Evaluation, rays: usize) -> Chec
 pub(crate) enum ConfirmedContours {
     Confirmed(Box<Contours>),
     Contradicted(String),
-    /// The part is thinner on average than the resolution of views.
-    TooThin,
+    /// The boundary rounded to f64 has no view.
+    Limited(ViewLimit),
 }
 
 /// The contours of a solid. Where f64 does not give its boundary, rays confirm them.
@@ -30,8 +30,8 @@ pub(crate) fn confirmed_contours(
             .map(Box::new)
             .map(ConfirmedContours::Confirmed);
     }
-    if evaluation.is_too_thin_for_views() {
-        return Ok(ConfirmedContours::TooThin);
+    if let Some(limit) = evaluation.view_limit() {
+        return Ok(ConfirmedContours::Limited(limit));
     }
     let seen = contours(evaluation.rounded_view_resolution())?;
     Ok(match Checker::new(tree, evaluation).contradiction(&seen) {

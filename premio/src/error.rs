@@ -4,7 +4,7 @@ use crate::expression::ExpressionError;
 use crate::number::NumberError;
 use crate::picture::PictureError;
 use premio_csg::builder::TreeError;
-use premio_csg::evaluate::EvaluationError;
+use premio_csg::evaluate::{EvaluationError, ViewLimit};
 use premio_csg::reader::{FacetLimitError, ReadError};
 use premio_csg::writer::WriteError;
 use premio_drawing::sheet::SheetError;
@@ -85,17 +85,9 @@ pub enum Error {
         /// What they contradict.
         detail: String,
     },
-    /// The part is thinner than views resolve.
-    #[error(
-        "the part is {thickness:.3e} thick on average, and views resolve {resolution:.3e}: the boundary \
-         is known, but it has no view"
-    )]
-    TooThin {
-        /// Twice the volume over the area.
-        thickness: f64,
-        /// The resolution of views.
-        resolution: f64,
-    },
+    /// The boundary rounded to f64 has no view.
+    #[error(transparent)]
+    ViewLimit(ViewLimit),
     /// A camera is invalid.
     #[error(transparent)]
     Camera(#[from] CameraError),

@@ -58,12 +58,7 @@ impl View {
             ConfirmedContours::Contradicted(detail) => {
                 return Err(Error::UncertainView { detail });
             }
-            ConfirmedContours::TooThin => {
-                return Err(Error::TooThin {
-                    thickness: solid.evaluation().mean_thickness(),
-                    resolution: solid.evaluation().rounded_view_resolution(),
-                });
-            }
+            ConfirmedContours::Limited(limit) => return Err(Error::ViewLimit(limit)),
         };
         Ok(Self(Arc::new(ViewData {
             solid: solid.clone(),

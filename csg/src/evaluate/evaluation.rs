@@ -9,7 +9,7 @@ use premio_kernel::number::double_double::F106;
 use premio_kernel::number::extended::F237;
 use premio_kernel::number::float::Float;
 use premio_kernel::number::predicates::{
-    Compare, DecisionStats, Predicates, RELATIVE_RESOLUTION, ROUNDING,
+    Compare, DecisionStats, GREATEST_ROUNDING_GAP, Predicates, RELATIVE_RESOLUTION, ROUNDING,
 };
 use std::sync::OnceLock;
 
@@ -61,6 +61,31 @@ impl<N: Float> WideBoundary<N> {
     }
 }
 
+/// Why a boundary that is known in more bits than f64 has no view.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ViewLimit {
+    /// Views cannot separate the two sides of the part.
+    #[error(
+        "the part is {thickness:.3e} thick on average, and views resolve {resolution:.3e}: the boundary \
+         is known, but it has no view"
+    )]
+    Thin {
+        /// Twice the volume over the area.
+        thickness: f64,
+        /// The resolution of views.
+        resolution: f64,
+    },
+    /// Rounding to f64 moves an edge too far off its faces.
+    #[error(
+        "an edge is {gap:.3e} off its faces when it is rounded to f64: the boundary is known, but it has \
+         no view"
+    )]
+    Rounded {
+        /// The distance of the edge from its faces.
+        gap: f64,
+    },
+}
+
 impl Evaluation {
     /// The resolution for views of the boundary, which are computed in f64. `None` if f64 does not
     /// give this boundary: surfaces rounded to f64 may coincide although the exact ones do not.
@@ -91,10 +116,22 @@ impl Evaluation {
         }
     }
 
-    /// Whether views in f64 cannot separate the two sides of the part.
-    pub fn is_too_thin_for_views(&self) -> bool {
-        let resolution = self.rounded_view_resolution();
-        self.view_resolution.is_none() && self.mean_thickness().is_short_of(resolution)
+    /// Why the boundary rounded to f64 has no view, if it has none.
+    pub fn view_limit(&self) -> Option<ViewLimit> {
+        if self.view_resolution.is_some() {
+            return None;
+        }
+        let gap = self.rounding_gap;
+        if !gap.is_within(GREATEST_ROUNDING_GAP * self.bounds.diagonal()) {
+            return Some(ViewLimit::Rounded { gap });
+        }
+        let (thickness, resolution) = (self.mean_thickness(), self.rounded_view_resolution());
+        thickness
+            .is_short_of(resolution)
+            .then_some(ViewLimit::Thin {
+                thickness,
+                resolution,
+            })
     }
 
     /// The resolution that f64 supports for the boundary, however finely it was evaluated.

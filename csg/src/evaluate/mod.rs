@@ -83,7 +83,7 @@ mod wall_joints;
 mod walls;
 
 pub use error::EvaluationError;
-pub use evaluation::Evaluation;
+pub use evaluation::{Evaluation, ViewLimit};
 pub use face_colours::face_colours;
 
 use self::arrangement::Arrangement;

@@ -262,9 +262,8 @@ impl<'a> Checker<'a> {
                 detail,
             }]
         };
-        if self.evaluation.is_too_thin_for_views() {
-            let refused = "refused: the part is thinner than views resolve";
-            return failed(Finding::Passes, refused.to_owned());
+        if let Some(limit) = self.evaluation.view_limit() {
+            return failed(Finding::Passes, format!("refused: {limit}"));
         }
         let known = self.evaluation.view_resolution();
         let resolution = known.unwrap_or_else(|| self.evaluation.rounded_view_resolution());

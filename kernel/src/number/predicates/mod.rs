@@ -40,6 +40,10 @@ pub(super) const TANGENCY: f64 = 1e-6;
 pub(super) const TANGENCY_OF_106_BITS: f64 = 1e-12;
 pub(super) const TANGENCY_OF_237_BITS: f64 = 3e-23;
 
+/// The greatest distance by which rounding to f64 may move an edge off its faces for the part to have
+/// views, relative to the part's size.
+pub const GREATEST_ROUNDING_GAP: f64 = 1e-8;
+
 /// The relative rounding error allowed to a short chain of operations on f64 values.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON;
 

@@ -165,16 +165,16 @@ fn is_ruling<N: Float>(ground: &Ground<N>, amid: &Amid<N>, line: &Line<N>, arc: 
     across.is_at_most(amid.part() * nearest * nearest)
 }
 
-/// Whether u is constant on a circle of a ring torus, to the precision of the integrals.
+/// Whether u is constant on a circle of a torus, to the precision of the integrals. Where the tube reaches
+/// the axis, edges end there.
 fn is_meridian<N: Float>(amid: &Amid<N>, torus: &Torus<N>, circle: &Circle<N>) -> bool {
     let axis = torus.frame.components(&circle.frame.z);
     let centre = torus.frame.coordinates(&circle.frame.origin);
     let part = amid.part();
-    torus.is_ring()
-        && axis.z.abs().is_at_most(part)
+    axis.z.abs().is_at_most(part)
         && (axis.x * centre.x + axis.y * centre.y)
             .abs()
-            .is_at_most(part * torus.major)
+            .is_at_most(part * torus.major.abs())
 }
 
 /// The integrals along a circle about the surface's axis.

@@ -56,7 +56,8 @@ struct LoopSum<N: Float> {
     turns: N,
 }
 
-/// ∮ G du over a loop, with G starting amid its edges, or at a cone's apex that the loop may pass.
+/// ∮ G du over a loop, with G starting amid its edges, or at an apex or a pole that the loop may pass: next
+/// to it u is known less accurately, and G is small.
 fn loop_sum<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],
@@ -65,9 +66,11 @@ fn loop_sum<N: Float>(
     marks: &dyn Fn(CoedgeId) -> Vec<N>,
 ) -> LoopSum<N> {
     let may_jump = density.may_jump(brep, coedges);
-    let start = match may_jump {
-        true => density.ground.base,
-        false => amid_edges(brep, &density.ground, coedges),
+    let pole_turns = pole_turns(brep, &density.ground.surface, coedges, side);
+    let start = match (may_jump, pole_turns.first()) {
+        (true, _) => density.ground.base,
+        (false, Some(turn)) => turn.v,
+        (false, None) => amid_edges(brep, &density.ground, coedges),
     };
     let mut total = [N::ZERO; 6];
     for &c in coedges {
@@ -77,7 +80,7 @@ fn loop_sum<N: Float>(
             *s += sign * v;
         }
     }
-    for turn in pole_turns(brep, &density.ground.surface, coedges, side) {
+    for turn in pole_turns {
         let along = density.over([turn.from, turn.from + turn.by], [start, turn.v]);
         let [a, v, x, y, z] = along;
         for (s, part) in total.iter_mut().zip([a, v, x, y, z, turn.by]) {

@@ -31,11 +31,11 @@ const AT_POLE: f64 = 1.0 / 16.0;
 /// The fraction of an edge from its end at which a point stands for the edge's direction.
 const NEXT_TO_END: f64 = 1.0 / (1 << 10) as f64;
 
-/// The difference of the angles about the axis of an edge's tangent and of the point next to its end
-/// above which the tangent is not known: the edge runs along the axis there, or turns back.
+/// The difference of the angles about the axis of an edge's direction at its end and of the point next to
+/// its end above which that direction is not known: the edge turns back there.
 const TANGENT_OFF: f64 = 1.0 / 16.0;
 
-/// The error of a sector between known tangents.
+/// The error of a sector between known directions.
 const SAME_ANGLE: f64 = 1.0 / (1 << 20) as f64;
 
 /// The turns of a loop at the poles of its surface, in order. `side` is the sense of the face's
@@ -98,7 +98,7 @@ fn sector<N: Float>(ends: [&CoedgeEnd<'_, N>; 2], torus: &Torus<N>, is_backward:
     };
     let directions = ends.map(|end| end.direction(torus));
     let sector = between(directions.map(|direction| direction.angle));
-    let error = match directions.iter().all(|direction| direction.is_tangent) {
+    let error = match directions.iter().all(|direction| direction.is_at_end) {
         true => SAME_ANGLE,
         false => TANGENT_OFF,
     };
@@ -123,8 +123,8 @@ pub(super) fn is_pole<N: Float>(torus: &Torus<N>, p: &Point3<N>) -> bool {
 #[derive(Clone, Copy)]
 struct EndDirection<N: Float> {
     angle: N,
-    /// Whether it is that of the tangent, and not of a point next to the end.
-    is_tangent: bool,
+    /// Whether it is that at the end, and not of a point next to the end.
+    is_at_end: bool,
 }
 
 /// An end of a coedge.
@@ -159,17 +159,20 @@ impl<'a, N: Float> CoedgeEnd<'a, N> {
         torus.frame.coordinates(&self.curve.point(t))
     }
 
-    /// The direction in which the coedge arrives at a pole, or leaves it.
+    /// The direction in which the coedge arrives at a pole, or leaves it. At the pole of a horn torus edges
+    /// are tangent to the axis and bend away from it.
     fn direction(&self, torus: &Torus<N>) -> EndDirection<N> {
-        let into = (self.other - self.at).signum();
-        let tangent = self.curve.tangent(self.at) * into;
-        let leaving = torus.frame.components(&tangent);
+        let away = match torus.is_horn() {
+            true => self.curve.curvature(self.at),
+            false => self.curve.tangent(self.at) * (self.other - self.at).signum(),
+        };
+        let leaving = torus.frame.components(&away);
         let (angle, inside) = (leaving.y.atan2(leaving.x), self.angle_inside(torus));
         let off = wrap(angle - inside).abs();
-        let is_tangent = off.is_short_of(N::from_f64(TANGENT_OFF));
+        let is_at_end = off.is_short_of(N::from_f64(TANGENT_OFF));
         EndDirection {
-            angle: if is_tangent { angle } else { inside },
-            is_tangent,
+            angle: if is_at_end { angle } else { inside },
+            is_at_end,
         }
     }
 

@@ -406,7 +406,6 @@ impl Faced<'_> {
             }
         };
         let [(from, first), (to, last)] = [limit(-1.0), limit(1.0)];
-        let start = surface.point(0.0, from);
         let only_free = match (first, last) {
             (Some(v), None) | (None, Some(v)) => Some(surface.point(0.0, v)),
             _ => None,
@@ -414,7 +413,7 @@ impl Faced<'_> {
         if only_free.is_some_and(|pole| self.contains(&pole)) {
             return None;
         }
-        let walk = SurfacePath::meridian_at(s, &start, 0.0, Sense::Along);
+        let walk = SurfacePath::meridian_from(s, [0.0, from], Sense::Along);
         Some(Track {
             walk: walk.upto((to - from) * s.minor),
             curve: tube(surface, s.major, s.minor),

@@ -282,7 +282,7 @@ impl<'a, N: Float> FaceLocator<'a, N> {
                 true => Sense::Against,
                 false => Sense::Along,
             };
-            SurfacePath::meridian_at(torus, from, u, sense)
+            SurfacePath::meridian_from(torus, [u, start], sense)
         };
         let [u, v] = self.surface.parameters(&self.target(k / 2));
         let mut way = Vec::with_capacity(3);

@@ -298,17 +298,23 @@ impl<N: Float> SurfacePath<N> {
     /// about the tube increases or decreases.
     pub fn meridian(torus: &Torus<N>, start: &Point3<N>, sense: Sense) -> Self {
         let q = torus.frame.coordinates(start);
-        Self::meridian_at(torus, start, q.y.atan2(q.x), sense)
+        let [_, v] = Surface::Torus(*torus).parameters(start);
+        Self::meridian_through(torus, start, [q.y.atan2(q.x), v], sense)
     }
 
-    /// The meridian at the angle `u` about the axis, through a point of it, which may be a pole.
-    pub fn meridian_at(torus: &Torus<N>, start: &Point3<N>, u: N, sense: Sense) -> Self {
+    /// The meridian from a point at these parameters, which may be a pole. Both poles of a horn torus are
+    /// one point with different parameters.
+    pub fn meridian_from(torus: &Torus<N>, [u, v]: [N; 2], sense: Sense) -> Self {
+        let start = Surface::Torus(*torus).point(u, v);
+        Self::meridian_through(torus, &start, [u, v], sense)
+    }
+
+    fn meridian_through(torus: &Torus<N>, start: &Point3<N>, [u, v]: [N; 2], sense: Sense) -> Self {
         let f = &torus.frame;
         let (sin, cos) = u.sin_cos();
         let radial = f.x * cos + f.y * sin;
         let axis = radial.cross(&f.z) * sense.sign::<N>();
         let centre = f.origin + radial * torus.major;
-        let [_, v] = Surface::Torus(*torus).parameters(start);
         let turn = torus.pole_angle() - v * sense.sign::<N>();
         Self::circle(start, centre, axis, Branch::Half(f.origin, radial)).upto(turn * torus.minor)
     }

@@ -134,3 +134,13 @@ fn a_curve_that_jumps_in_a_near_contact_is_refused() {
         Err(error) => assert!(matches!(error, StepError::Spline(SplineError::Jump { .. }))),
     }
 }
+
+/// A block cuts a torus 1e-9 from its pole, and another one at the pole. Without the short edge from the
+/// pole the angle about the axis would jump, and the face be its complement.
+#[test]
+fn an_edge_that_ends_next_to_a_pole_is_refused() {
+    let text = "PART = (TOR(RMAJ=0.75, RMIN=1.25)
+        DIF BLO(X=3, Y=3, Z=3) AT (MOVX=-3, MOVY=-1.5, MOVZ=-0.5)
+        DIF BLO(X=3.5, Y=0.5, Z=3.5) AT (ROTX=180, MOVZ=1, MOVX=-0.000000001))";
+    assert_refused_in_millimetres(text, Thin::Edge, 1.25e-9, 1e-7);
+}

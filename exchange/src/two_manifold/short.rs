@@ -12,8 +12,8 @@ const STEPS: u32 = 16;
 impl TwoManifold<'_> {
     /// Merges the vertices at the ends of every edge no longer than `least`, and removes the edge.
     /// A chain of short edges stays if it is longer in total, and so does the last edge of a loop. So
-    /// does a seam to a pole, and an edge that turns around an apex: without it a loop would be open
-    /// in the angle.
+    /// does a seam to a pole, and an edge that turns around an apex or ends at one: without it a loop
+    /// would be open in the angle.
     pub(crate) fn merge_short_edges(&mut self, least: f64) {
         let short: Vec<usize> = (0..self.edges.len())
             .filter(|&e| {
@@ -56,7 +56,8 @@ impl TwoManifold<'_> {
         seam.source.is_none() && !seam.ends.iter().all(is_shared)
     }
 
-    /// Whether the angle about the axis of a face with an apex changes along an edge by more than little.
+    /// Whether an edge of a face with an apex ends there, or the angle about the face's axis changes along the
+    /// edge by more than little.
     fn turns_around_apex(&self, edge: usize) -> bool {
         let SeamedEdge { curve, range, .. } = &self.edges[edge];
         let [p, q] = range.map(|t| curve.point(t));
@@ -66,8 +67,14 @@ impl TwoManifold<'_> {
         });
         adjacent.any(|face| {
             let surface = &face.window.surface;
+            let ends_there = |apex: Point3<f64>| {
+                let [a, b] = [p, q].map(|end| (end - apex).norm());
+                a.min(b) <= SMALL_TURN * a.max(b)
+            };
             let [u, v] = [&p, &q].map(|x| surface.parameters(x)[0]);
-            surface.apexes().next().is_some() && wrap(v - u).abs() > SMALL_TURN
+            let mut apexes = surface.apexes();
+            let turns = wrap(v - u).abs() > SMALL_TURN;
+            apexes.any(|apex| turns || ends_there(apex))
         })
     }
 }

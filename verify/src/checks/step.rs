@@ -155,7 +155,7 @@ mod tests {
         rules::measure(&shape, known)
     }
 
-    const PARTS: [&str; 16] = [
+    const PARTS: [&str; 18] = [
         "A = BLO(X=3, Y=4, Z=5)",
         "A = SPH(R=2) AT (ROTX=17, MOVX=9)",
         "A = TOR(RMAJ=3, RMIN=1) AT (ROTX=17, MOVZ=-4)",
@@ -193,6 +193,14 @@ mod tests {
         "A = CON(R=2, H=2) DIF WED(X=5, Y=5, Z=5) AT (MOVX=-4, MOVY=-2)",
         // Planes that nearly pass through an apex.
         "A = CON(R=1, H=1.5) AT (MOVX=0.0000019, MOVY=0.0000019) INT BLO(X=4, Y=4, Z=4)",
+        // A loop passes through the pole of a horn torus, whose axis its edges touch.
+        "A = ((TOR(RMAJ=2, RMIN=2) UN BLO(X=1, Y=2.5, Z=2.5) AT (ROTZ=30, MOVY=-2))
+            INT CON(R=1.5, H=2.5, R2=0.5))",
+        // Two edges on a face of a horn torus that contains both its poles, and no edge at its pole.
+        "A = ((((TOR(RMAJ=1, RMIN=1.5) UN TOR(RMAJ=1, RMIN=0.5) AT (ROTX=45, MOVZ=1.118033988749895))
+              INT TOR(RMAJ=1.5, RMIN=1) AT (ROTY=90, MOVX=-0.5, MOVY=-0.5, MOVZ=2))
+            INT TOR(RMAJ=0.5, RMIN=0.5) AT (ROTY=180, MOVY=1, MOVZ=1.5))
+          UN SPH(R=1) AT (MOVZ=0.118033988749895))",
     ];
 
     /// The volume by the file's own curves is that of the boundary, whatever the surfaces.

@@ -6,7 +6,7 @@ use super::spline_net::SplineNet;
 use super::surface::{StepSurface, SurfaceForm};
 use nalgebra::{Point3, Vector3};
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// An edge.
 #[derive(Clone, Debug)]
@@ -484,15 +484,14 @@ impl<'i> Reader<'i> {
         let x = z.cross(&about.z);
         let away = about.origin - origin;
         let major = away.dot(&x);
-        let height = ((minor - major) * (minor + major)).max(0.0).sqrt();
-        let end = match height > 0.0 {
-            true => height.atan2(-major),
-            false => PI,
-        };
         let start = about.origin + about.x * minor;
-        let pole = origin + z * (away.dot(&z) - height);
+        // By the start: the radii of a horn torus give the square root of their rounding.
+        let height = (about.origin - start).dot(&z);
+        let end = height.max(0.0).atan2(-major);
+        let pole = origin + z * (start - origin).dot(&z);
         let near = SAME_POINT * (minor + major.abs());
-        match z.dot(&about.z).abs() <= SAME_POINT && (start - pole).norm() <= near {
+        let is_lower = height >= -near && (start - pole).norm() <= near;
+        match z.dot(&about.z).abs() <= SAME_POINT && is_lower {
             true => Ok(StepSurface {
                 place: Placement {
                     origin: origin + z * away.dot(&z),

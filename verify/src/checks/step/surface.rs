@@ -60,6 +60,15 @@ pub enum FaceQuantity {
     Area,
 }
 
+/// The relative difference of the radii of a torus below which it is like a horn torus at its poles.
+const HORN: f64 = 1.0 / 256.0;
+
+/// Where an edge to the pole of a horn torus is first evaluated.
+const AT_HORN: f64 = 1.0 / 512.0;
+
+/// Where an edge to another pole is first evaluated.
+const AT_POLE: f64 = 1.0 / (1 << 20) as f64;
+
 /// A point at which the angle about the axis is undefined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pole {
@@ -142,6 +151,16 @@ impl StepSurface {
                 false => Some(Pole::North),
             },
             _ => None,
+        }
+    }
+
+    /// The distance from a pole at which an edge is first evaluated, relative to its first piece. An edge is
+    /// tangent to the axis at the pole of a horn torus: its distance from the axis is the square of that from
+    /// the pole, and so small a number does not give the angle.
+    pub fn next_to_pole(&self) -> f64 {
+        match self.form {
+            SurfaceForm::Sheet { major, minor, .. } if minor - major < HORN * minor => AT_HORN,
+            _ => AT_POLE,
         }
     }
 

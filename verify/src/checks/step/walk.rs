@@ -200,7 +200,7 @@ impl Walk<'_> {
         for (k, pair) in stops.windows(2).enumerate() {
             // Between the ends, so that no angle is evaluated at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());
-            let inner = (pair[1] - pair[0]) * INNER;
+            let inner = (pair[1] - pair[0]) * self.surface.next_to_pole();
             let from = if is_first && poles[0].is_some() {
                 pair[0] + inner
             } else {
@@ -372,6 +372,3 @@ impl Walk<'_> {
 fn is_seam(last: StepEdgeUse, next: StepEdgeUse) -> bool {
     last.edge == next.edge && last.along != next.along
 }
-
-/// The distance from a pole at which an edge is first evaluated, relative to its first piece.
-const INNER: f64 = 1.0 / (1 << 20) as f64;

@@ -108,25 +108,15 @@ pub enum ProfileChoice {
 
 impl ValueEnum for ProfileChoice {
     fn value_variants<'a>() -> &'a [Self] {
-        use Profile::{
-            Deep, Ellipsoid, Figures, Grid, Near, NearEllipsoid, NearTangent, Oblique, Parts,
-            Rounded, Tangent, Wide,
+        const CHOICES: [ProfileChoice; Profile::ALL.len() + 1] = {
+            let mut choices = [ProfileChoice::All; Profile::ALL.len() + 1];
+            let mut i = 0;
+            while i < Profile::ALL.len() {
+                choices[i + 1] = ProfileChoice::One(Profile::ALL[i]);
+                i += 1;
+            }
+            choices
         };
-        const CHOICES: [ProfileChoice; 13] = [
-            ProfileChoice::All,
-            ProfileChoice::One(Grid),
-            ProfileChoice::One(Near),
-            ProfileChoice::One(Tangent),
-            ProfileChoice::One(Deep),
-            ProfileChoice::One(Wide),
-            ProfileChoice::One(Parts),
-            ProfileChoice::One(Rounded),
-            ProfileChoice::One(Figures),
-            ProfileChoice::One(Oblique),
-            ProfileChoice::One(Ellipsoid),
-            ProfileChoice::One(NearEllipsoid),
-            ProfileChoice::One(NearTangent),
-        ];
         &CHOICES
     }
 

@@ -9,6 +9,7 @@ mod near_ellipsoid;
 mod near_tangent;
 mod oblique;
 mod parts;
+mod pinched;
 pub mod rounded;
 mod tangent;
 mod wide;
@@ -50,11 +51,14 @@ pub enum Profile {
     /// turned or grown a little.
     #[serde(rename = "near-tangent")]
     NearTangent,
+    /// 2 to 5 primitives, of which the first one is a horn or spindle torus and about half are at a pole of it
+    /// or next to it.
+    Pinched,
 }
 
 impl Profile {
     /// Every profile.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Grid,
         Self::Near,
         Self::Tangent,
@@ -67,6 +71,7 @@ impl Profile {
         Self::Ellipsoid,
         Self::NearEllipsoid,
         Self::NearTangent,
+        Self::Pinched,
     ];
 
     /// The name, as it is written on the command line.
@@ -84,6 +89,7 @@ impl Profile {
             Self::Ellipsoid => "ellipsoid",
             Self::NearEllipsoid => "near-ellipsoid",
             Self::NearTangent => "near-tangent",
+            Self::Pinched => "pinched",
         }
     }
 
@@ -117,6 +123,9 @@ impl Profile {
             Self::NearTangent => {
                 "A tree of `tangent`, also rotated about the contact, with primitives moved, turned or grown a little"
             }
+            Self::Pinched => {
+                "A horn or spindle torus with 1 to 4 primitives, of which half are at a pole or next to it"
+            }
             Self::Wide => "One operation on 8 to 1500 primitives, most in a lattice",
             Self::Parts => {
                 "A part that a person would model: a plate, a bracket, a flange, a shaft, a housing, a bearing"
@@ -142,6 +151,7 @@ impl Profile {
             Self::Ellipsoid => ellipsoid::model(seed),
             Self::NearEllipsoid => near_ellipsoid::model(seed),
             Self::NearTangent => near_tangent::model(seed),
+            Self::Pinched => pinched::model(seed),
         }
     }
 }
@@ -185,7 +195,10 @@ mod tests {
                     Profile::Wide => 1501,
                     Profile::Parts | Profile::Rounded => 80,
                     Profile::Figures => 3,
-                    Profile::Oblique | Profile::Ellipsoid | Profile::NearEllipsoid => 5,
+                    Profile::Oblique
+                    | Profile::Ellipsoid
+                    | Profile::NearEllipsoid
+                    | Profile::Pinched => 5,
                 };
                 assert!((2..=most).contains(&leaves), "{profile} {seed}: {leaves}");
             }

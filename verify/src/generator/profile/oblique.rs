@@ -19,7 +19,7 @@ pub(super) fn model(seed: u64) -> PartModel {
 pub(super) fn chain(
     random: &mut RandomChoices,
     first: ModelPrimitive,
-    other: fn(&mut RandomChoices, &mut PartModel) -> ModelNodeId,
+    other: impl Fn(&mut RandomChoices, &mut PartModel) -> ModelNodeId,
 ) -> PartModel {
     use ModelOperation::{Difference, Intersection, Union};
     let mut model = PartModel::default();

@@ -38,6 +38,27 @@ fn blocks_that_end_next_to_a_pole() {
     assert_additive([1.5, 2.5], above);
 }
 
+/// Edges in planes through the axis bend away from it at the pole, at angles that their tangents do not show.
+#[test]
+fn a_block_with_a_corner_at_the_pole_may_be_turned() {
+    assert_additive([2.0, 2.0], "BLO(X=1, Y=1, Z=1) AT (ROTZ=-30)");
+}
+
+/// A torus lies in another one but for a sliver 1e-12 thick along their largest parallel, and planes of a wedge
+/// pass through the sliver. Where the tori are taken for tangent, edges in those planes must not count
+/// as edges of the sliver.
+#[test]
+fn a_sliver_between_tangent_tori_has_no_slits() {
+    let part = "P = (
+        TOR(RMAJ=2, RMIN=2)
+        DIF WED(X=1.5, Y=1, Z=1) AT (ROTY=-90, MOVY=1, MOVZ=-1.5)
+        DIF TOR(RMAJ=1.5, RMIN=2.5) AT (MOVZ=0.000001)
+        ) UN TOR(RMAJ=2.5, RMIN=1)\n";
+    let volume = evaluated(&tree(part, Format::Padl)).mass().volume;
+    let ring = 5.0 * std::f64::consts::PI.powi(2);
+    assert!((volume - ring).abs() < 1e-9, "{volume} of {ring}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
@@ -47,6 +68,7 @@ proptest! {
         size in [1..6, 1..6, 1..6],
         corner in [-2..2, -2..2, -2..2],
         at_pole in any::<bool>(),
+        turned in prop::sample::select(vec!["0", "-30", "17"]),
         off in prop::sample::select(vec!["0", "0.00001", "0.00000001", "-0.00000001", "0.0000000001"]),
     ) {
         let (radii, pole) = TORI[torus];
@@ -54,7 +76,7 @@ proptest! {
         let [x, y, z] = size.map(half);
         let [a, b, c] = corner.map(half);
         let c = if at_pole { c + pole } else { c };
-        let block = format!("BLO(X={x}, Y={y}, Z={z}) AT (MOVX={a}, MOVY={b}, MOVZ={c}, MOVZ={off})");
+        let block = format!("BLO(X={x}, Y={y}, Z={z}) AT (MOVX={a}, MOVY={b}, MOVZ={c}, MOVZ={off}, ROTZ={turned})");
         assert_additive(radii, &block);
     }
 }

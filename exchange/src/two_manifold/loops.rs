@@ -11,6 +11,7 @@ use crate::parameters::ParameterWindow;
 use nalgebra::Point2;
 use premio_kernel::brep::Brep;
 use premio_kernel::brep::topology::{CoedgeId, FaceId, Sense};
+use premio_kernel::geometry::surface::Surface;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -442,6 +443,12 @@ fn along(
             .point(lo + (hi - lo) * f64::from(k) / f64::from(STEPS))
     };
     let mut points: Vec<Point2<f64>> = (0..=STEPS).map(|k| window.parameters_at(&at(k))).collect();
+    if matches!(window.surface, Surface::Torus(torus) if torus.is_horn()) {
+        // Both poles are one point.
+        for p in points.iter_mut().filter(|p| p.x.is_nan()) {
+            p.y = f64::NAN;
+        }
+    }
     if edge.source.is_none() || is_at_start(&points, window) {
         on_seam(&mut points, sense == side, window);
     }
@@ -458,7 +465,7 @@ fn along(
     points
 }
 
-/// The equivalent value closest to another. On an axis, where it is undefined, the other value.
+/// The equivalent value closest to another; the other value where it is undefined.
 fn nearest_equivalent(window: &ParameterWindow, i: usize, x: f64, other: f64) -> f64 {
     if x.is_nan() {
         return other;

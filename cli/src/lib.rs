@@ -16,7 +16,7 @@ mod session;
 mod setup;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use diagnostics::{CliError, Reporter};
 use files::Files;
 use premio_csg::reader::Format;
@@ -25,6 +25,7 @@ use premio_memory::EndingAllocator;
 use session::Session;
 use std::ffi::OsString;
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The allocator of the program, which prints a message when memory is exhausted.
@@ -78,11 +79,16 @@ fn run_command(command: &Command, session: Session) -> Result<(), CliError> {
     }
 }
 
-/// The arguments, with `info` before a description that has no command before it.
+/// The arguments, with `info` before a description that has no command before it. The error of another
+/// file, or of a folder, is then that of a description, and not that of a command.
 fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_option = |word: &OsString| word.to_string_lossy().starts_with('-');
     let first = (1..arguments.len()).find(|&i| !is_option(&arguments[i]));
-    if let Some(first) = first.filter(|&i| Format::from_path(&arguments[i]).is_some()) {
+    let is_path = |word: &OsString| {
+        let is_command = || Arguments::command().find_subcommand(word).is_some();
+        Format::from_path(word).is_some() || (!is_command() && Path::new(word).exists())
+    };
+    if let Some(first) = first.filter(|&i| is_path(&arguments[i])) {
         arguments.insert(first, "info".into());
     }
     arguments
@@ -105,6 +111,7 @@ mod tests {
             with("premio --json a.csg --strict"),
             "premio --json info a.csg --strict"
         );
+        assert_eq!(with("premio src"), "premio info src");
         for kept in [
             "premio",
             "premio check part.padl",

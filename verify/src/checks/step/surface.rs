@@ -164,6 +164,14 @@ impl StepSurface {
         }
     }
 
+    /// v at the north pole of a surface of revolution of a circle.
+    pub fn north_of_sheet(&self) -> Option<f64> {
+        match self.form {
+            SurfaceForm::Sheet { end, .. } => Some(2.0 * end),
+            _ => None,
+        }
+    }
+
     /// u and v of a point, with angles between -pi and pi.
     pub fn parameters(&self, p: &Point3<f64>) -> [f64; 2] {
         let q = self.place.local(p);

@@ -30,17 +30,19 @@ impl FaceIntegral {
     pub fn along(&self, shape: &StepShape, face: &StepFace, ring: &[StepEdgeUse]) -> LoopIntegral {
         let surface = &shape.surfaces[&face.surface];
         // The integral along a loop that closes in the parameters does not depend on the v₀ at which P
-        // is zero. With v₀ next to the loop, P is small on a short loop, and its rounding too. At a pole
-        // P is the one of the surface's formulas.
+        // is zero. With v₀ next to the loop, P is small on a short loop, and its rounding too. With v₀ at
+        // a pole, where the angle is known less accurately, P is small there; in the surface's formulas
+        // that is the south pole.
         let next_to_loop = ring.first().map(|used| {
             let edge = &shape.edges[&used.edge];
             let [from, to] = edge.range;
             surface.parameters(&edge.curve.at(0.5 * (from + to)).point)[1]
         });
         let walk = self.walk(shape, face, ring, next_to_loop);
-        let walk = match walk.passes_pole {
-            true => self.walk(shape, face, ring, None),
-            false => walk,
+        let walk = match walk.passed {
+            [false, false] => walk,
+            [false, true] => self.walk(shape, face, ring, surface.north_of_sheet()),
+            [true, _] => self.walk(shape, face, ring, None),
         };
         let Walk { flow, is_clear, .. } = walk;
         let open = walk.gap;
@@ -80,7 +82,7 @@ impl FaceIntegral {
             fine: scale * FINE,
             is_clear: true,
             zero,
-            passes_pole: false,
+            passed: [false; 2],
             gap: [0.0; 2],
         };
         for used in ring {
@@ -142,8 +144,8 @@ struct Walk<'s> {
     is_clear: bool,
     /// The v at which P is zero, if it is not that of the surface's formulas.
     zero: Option<f64>,
-    /// Whether an edge starts or ends at a pole.
-    passes_pole: bool,
+    /// Whether an edge starts or ends at the south and the north pole.
+    passed: [bool; 2],
     /// The gap in both parameters after the last edge.
     gap: [f64; 2],
 }
@@ -196,7 +198,9 @@ impl Walk<'_> {
             (end, inside(*last, *before)),
         ];
         let poles = poles.map(|(p, inner)| self.surface.pole(&p, &inner, self.tolerance));
-        self.passes_pole |= poles.iter().any(Option::is_some);
+        for pole in poles.into_iter().flatten() {
+            self.passed[usize::from(pole == Pole::North)] = true;
+        }
         for (k, pair) in stops.windows(2).enumerate() {
             // Between the ends, so that no angle is evaluated at a pole.
             let (is_first, is_last) = (k == 0, k + 2 == stops.len());
@@ -262,9 +266,12 @@ impl Walk<'_> {
 
     fn pass_pole(&mut self, pole: Pole, from: f64, turned: f64) -> f64 {
         let to = from + turned;
-        self.flow -= self
-            .surface
-            .flow_at_pole(self.quantity, pole, [from, to], &self.about);
+        // Otherwise P is zero there.
+        if self.zero.is_none() {
+            self.flow -= self
+                .surface
+                .flow_at_pole(self.quantity, pole, [from, to], &self.about);
+        }
         to
     }
 

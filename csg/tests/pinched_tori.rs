@@ -38,15 +38,16 @@ fn blocks_that_end_next_to_a_pole() {
     assert_additive([1.5, 2.5], above);
 }
 
-/// Edges in planes through the axis bend away from it at the pole, at angles that their tangents do not show.
+/// Edges in planes through the axis are tangent to it at the pole. Only their curvature shows the angles at
+/// which they leave it.
 #[test]
-fn a_block_with_a_corner_at_the_pole_may_be_turned() {
+fn a_block_with_a_corner_at_the_pole_may_be_rotated() {
     assert_additive([2.0, 2.0], "BLO(X=1, Y=1, Z=1) AT (ROTZ=-30)");
 }
 
-/// A torus lies in another one but for a sliver 1e-12 thick along their largest parallel, and planes of a wedge
-/// pass through the sliver. Where the tori are taken for tangent, edges in those planes must not count
-/// as edges of the sliver.
+/// A torus lies in another one except for a sliver along their largest parallel. The sliver is 1e-12 thick, and
+/// planes of a wedge pass through it. Edges in those planes are not edges of the sliver where the tori count
+/// as tangent.
 #[test]
 fn a_sliver_between_tangent_tori_has_no_slits() {
     let part = "P = (
@@ -68,7 +69,7 @@ proptest! {
         size in [1..6, 1..6, 1..6],
         corner in [-2..2, -2..2, -2..2],
         at_pole in any::<bool>(),
-        turned in prop::sample::select(vec!["0", "-30", "17"]),
+        rotation in prop::sample::select(vec!["0", "-30", "17"]),
         off in prop::sample::select(vec!["0", "0.00001", "0.00000001", "-0.00000001", "0.0000000001"]),
     ) {
         let (radii, pole) = TORI[torus];
@@ -76,7 +77,7 @@ proptest! {
         let [x, y, z] = size.map(half);
         let [a, b, c] = corner.map(half);
         let c = if at_pole { c + pole } else { c };
-        let block = format!("BLO(X={x}, Y={y}, Z={z}) AT (MOVX={a}, MOVY={b}, MOVZ={c}, MOVZ={off}, ROTZ={turned})");
+        let block = format!("BLO(X={x}, Y={y}, Z={z}) AT (MOVX={a}, MOVY={b}, MOVZ={c}, MOVZ={off}, ROTZ={rotation})");
         assert_additive(radii, &block);
     }
 }

@@ -27,7 +27,7 @@ impl TwoManifold<'_> {
             let is_alone =
                 |ring: &[HalfEdge]| ring.iter().any(|h| h.edge == edge) && ring.len() < 3;
             let mut rings = self.faces.iter().flat_map(|face| &face.loops);
-            let closes = self.ends_at_pole(edge) || self.turns_around_apex(edge);
+            let closes = self.ends_at_pole(edge) || self.is_needed_at_apex(edge);
             let is_needed = closes || rings.any(|ring| is_alone(ring));
             if a == b || (p - q).norm() > least || is_needed {
                 continue;
@@ -56,9 +56,8 @@ impl TwoManifold<'_> {
         seam.source.is_none() && !seam.ends.iter().all(is_shared)
     }
 
-    /// Whether an edge of a face with an apex ends there, or the angle about the face's axis changes along the
-    /// edge by more than little.
-    fn turns_around_apex(&self, edge: usize) -> bool {
+    /// Whether an edge ends at an apex of one of its faces, or turns around it by more than `SMALL_TURN`.
+    fn is_needed_at_apex(&self, edge: usize) -> bool {
         let SeamedEdge { curve, range, .. } = &self.edges[edge];
         let [p, q] = range.map(|t| curve.point(t));
         let mut adjacent = self.faces.iter().filter(|face| {

@@ -56,8 +56,8 @@ struct LoopSum<N: Float> {
     turns: N,
 }
 
-/// ∮ G du over a loop, with G starting amid its edges, or at an apex or a pole that the loop may pass: next
-/// to it u is known less accurately, and G is small.
+/// ∮ G du over a loop. G starts amid the loop's edges, or at an apex or a pole that the loop may pass. Next to
+/// an apex or a pole u is less accurate, and a small G makes that harmless.
 fn loop_sum<N: Float>(
     brep: &Brep<N>,
     coedges: &[CoedgeId],

@@ -30,9 +30,9 @@ impl FaceIntegral {
     pub fn along(&self, shape: &StepShape, face: &StepFace, ring: &[StepEdgeUse]) -> LoopIntegral {
         let surface = &shape.surfaces[&face.surface];
         // The integral along a loop that closes in the parameters does not depend on the v₀ at which P
-        // is zero. With v₀ next to the loop, P is small on a short loop, and its rounding too. With v₀ at
-        // a pole, where the angle is known less accurately, P is small there; in the surface's formulas
-        // that is the south pole.
+        // is zero. With v₀ next to the loop, P is small on a short loop, and its rounding too. Where
+        // the loop passes a pole, v₀ is at that pole: there the angle is less accurate, and P is zero. The
+        // surface's formulas start at the south pole.
         let next_to_loop = ring.first().map(|used| {
             let edge = &shape.edges[&used.edge];
             let [from, to] = edge.range;
@@ -266,7 +266,7 @@ impl Walk<'_> {
 
     fn pass_pole(&mut self, pole: Pole, from: f64, turned: f64) -> f64 {
         let to = from + turned;
-        // Otherwise P is zero there.
+        // With another v₀, P is zero at the pole that the loop passes.
         if self.zero.is_none() {
             self.flow -= self
                 .surface
